@@ -113,6 +113,7 @@ class BinaryBody {
   public:
     explicit BinaryBody(std::string_view bytes) : bytes_(bytes) {}
     static constexpr std::size_t min_size(Type type) { return kSizes[static_cast<int>(type)]; }
+    static constexpr std::size_t kSpare = 0;
     std::size_t left() const { return bytes_.size() - at_; }
     std::size_t at() const { return at_; }
 
@@ -160,8 +161,8 @@ class BinaryBody {
 class AsciiBody {
   public:
     explicit AsciiBody(std::string_view bytes) : bytes_(bytes) {}
-    static constexpr std::size_t min_size(Type) { return 2; }     // a digit and a space
-    std::size_t left() const { return bytes_.size() - at_ + 1; }  // the last space may be missing
+    static constexpr std::size_t min_size(Type) { return 2; }  // a digit and a space
+    std::size_t left() const { return bytes_.size() - at_; }
     std::size_t at() const { return at_; }
 
     bool read(Type type, double& value) {
@@ -208,17 +209,20 @@ class Reader {
     }
 
   private:
+    /// How many things of at least `size` bytes may still come.
+    std::size_t room(std::size_t size) const { return (body_.left() + Body::kSpare) / size; }
+
     /// Holds an element's count against the bytes that are there, before anything is allocated.
     void check_count(const Element& element) const {
         std::size_t size = 0;
         for (const Property& p : element.properties)
             size += Body::min_size(p.count_type.value_or(p.type));
-        if (size == 0 || element.count <= body_.left() / size) return;
+        if (size == 0 || element.count <= room(size)) return;
         throw FormatError(
             fmt::format("announces {} {} elements of at least {} bytes each, but only {} bytes are "
                         "left, enough "
                         "for {}: truncated, or a wrong count",
-                        element.count, element.name, size, body_.left(), body_.left() / size));
+                        element.count, element.name, size, body_.left(), room(size)));
     }
 
     double next(Type type, const Element& element, std::size_t index) {
@@ -237,7 +241,7 @@ class Reader {
         if (property.count_type) {
             count = next(*property.count_type, element, index);
             if (!(count >= 0) || count != std::floor(count) ||
-                count > static_cast<double>(body_.left() / Body::min_size(property.type)))
+                count > static_cast<double>(room(Body::min_size(property.type))))
                 throw FormatError(
                     fmt::format("{} {} has a list of {} values, with {} bytes left: "
                                 "truncated or corrupt",
