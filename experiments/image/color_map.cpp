@@ -1,3 +1,4 @@
+// Colour maps as paths through OKLab.
 #include "experiments/image/color_map.hpp"
 
 #include <fmt/format.h>

@@ -51,7 +51,7 @@ TEST_F(ObjFiles, RandomPolygonsKeepTheirArea) {
     for (int n = 4; n < 60; ++n) {
         SCOPED_TRACE(n);
         std::string text = "f";
-        for (int i = 1; i <= n; ++i) text += " " + std::to_string(i);
+        for (int i = 1; i <= n; ++i) text += fmt::format(" {}", i);
         double area = 0;
         std::vector<glm::dvec2> corners;
         for (int i = 0; i < n; ++i)

@@ -160,7 +160,7 @@ TEST_F(PlyFiles, EveryTruncationIsNamed) {
     EXPECT_THAT(error("a.ply", whole.substr(0, whole.size() - 1)),
                 HasSubstr("face 3 has a list of 3 values, with 11 bytes left: truncated"));
     EXPECT_THAT(error("a.ply", header("ascii", 3, 1) + "0 0 0\n1 0 0\n0 1 "),
-                HasSubstr("only 15 bytes are left, enough for 2"));
+                HasSubstr("only 16 bytes are left, enough for 2"));
     EXPECT_THAT(error("a.ply", header("ascii", 3, 1) + "0.0000 0 0\n1 0 0\n0 1 "),
                 HasSubstr("ends inside vertex 2 of 3"));
 }
