@@ -28,8 +28,8 @@ class Method {
     virtual void prepare(const structures::geometry::TriangleMesh& mesh) = 0;
     /// Builds whatever the query walks, for this light. Returns `build_ms` at least.
     virtual structures::Samples build(const structures::geometry::Light& light) = 0;
-    /// Answers every point. `visible` gets one bit per point in the order of `points` (bit i % 32 of
-    /// word i / 32): 1 = lit. Points without geometry get 1. Returns `query_ms` at least.
+    /// Answers every point. `visible` gets one bit per point in the order of `points` (bit i % 32
+    /// of word i / 32): 1 = lit. Points without geometry get 1. Returns `query_ms` at least.
     virtual structures::Samples query(const Points& points, Visibility& visible) = 0;
     /// Per-point cost of the last query (nodes visited), if the method was asked for statistics:
     /// empty otherwise. Same order as the points.

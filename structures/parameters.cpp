@@ -79,10 +79,10 @@ Settings Settings::resolve(std::span<const Parameter> parameters,
     for (const auto& [key, value] : given) {
         if (std::find(names.begin(), names.end(), key) != names.end()) continue;
         const std::string near = closest(key, names);
-        throw SettingError(key, near.empty()
-                                    ? fmt::format("unknown key '{}'; known keys: {}", key,
-                                                  fmt::join(names, ", "))
-                                    : fmt::format("unknown key '{}'; did you mean '{}'?", key, near));
+        throw SettingError(
+            key, near.empty()
+                     ? fmt::format("unknown key '{}'; known keys: {}", key, fmt::join(names, ", "))
+                     : fmt::format("unknown key '{}'; did you mean '{}'?", key, near));
     }
     Settings settings;
     for (const Parameter& p : parameters) {

@@ -5,8 +5,8 @@
 
 namespace structures::geometry {
 
-/// `point`: `vector` is the position. `directional`: `vector` is the direction in which light travels
-/// (any length but zero), so a receiver p is lit along p - t * vector, t > 0.
+/// `point`: `vector` is the position. `directional`: `vector` is the direction in which light
+/// travels (any length but zero), so a receiver p is lit along p - t * vector, t > 0.
 struct Light {
     enum class Type { point, directional };
     Type type = Type::point;

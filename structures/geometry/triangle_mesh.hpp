@@ -9,15 +9,17 @@
 
 namespace structures::geometry {
 
-/// `triangles[i]` holds three indices into `positions`. A primitive id is an index into `triangles`.
-/// Loaders guarantee: indices in range, positions finite. Degenerate triangles (zero area, repeated
-/// index) may be present; structures count them and leave them out.
+/// `triangles[i]` holds three indices into `positions`. A primitive id is an index into
+/// `triangles`. Loaders guarantee: indices in range, positions finite. Degenerate triangles (zero
+/// area, repeated index) may be present; structures count them and leave them out.
 struct TriangleMesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
 
     std::size_t triangle_count() const { return triangles.size(); }
-    glm::vec3 corner(std::size_t triangle, int k) const { return positions[triangles[triangle][k]]; }
+    glm::vec3 corner(std::size_t triangle, int k) const {
+        return positions[triangles[triangle][k]];
+    }
     Aabb triangle_bounds(std::size_t triangle) const {
         Aabb box;
         for (int k = 0; k < 3; ++k) box.grow(corner(triangle, k));

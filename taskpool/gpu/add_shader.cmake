@@ -21,7 +21,7 @@ function(add_shaders target)
         file(MAKE_DIRECTORY ${folder})
         add_custom_command(
             OUTPUT ${spirv}
-            COMMAND ${GLSLANG} -V --quiet --target-env vulkan1.3 -I${CMAKE_SOURCE_DIR}
+            COMMAND ${GLSLANG} -V --target-env vulkan1.3 -I${CMAKE_SOURCE_DIR}
                     --depfile ${spirv}.d -o ${spirv} ${source}
             COMMAND ${SPIRV_VAL} --target-env vulkan1.3 --scalar-block-layout ${spirv}
             MAIN_DEPENDENCY ${source}

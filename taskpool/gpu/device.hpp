@@ -60,6 +60,11 @@ class Device {
     std::uint64_t peak_bytes() const { return peak_; }
     void reset_peak() { peak_ = allocated_.load(); }
 
+    /// Whether pipelines must ask for the subgroup size (a device that offers several).
+    bool requires_subgroup_size() const {
+        return info_.min_subgroup_size != info_.max_subgroup_size;
+    }
+
     // For the classes of this folder, and for rasterisation.
     VkDevice handle() const { return device_; }
     VkPhysicalDevice physical() const { return physical_; }
@@ -87,5 +92,8 @@ class Device {
     VkPhysicalDeviceMemoryProperties memory_{};
     std::atomic<std::uint64_t> allocated_{0}, peak_{0};
 };
+
+/// What Error says when `device` was lost while `kernel` (empty: none) was running.
+std::string device_lost_message(const std::string& device, const std::string& kernel);
 
 }  // namespace taskpool::gpu

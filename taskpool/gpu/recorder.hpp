@@ -65,7 +65,7 @@ class Recorder {
     Device& device_;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
     std::vector<std::string> kernels_;  ///< in order of recording
-    Buffer breadcrumbs_;  ///< host-visible word: how many of `kernels_` were started
+    Buffer breadcrumbs_;                ///< host-visible word: how many of `kernels_` were started
 };
 
 }  // namespace taskpool::gpu
