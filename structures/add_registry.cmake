@@ -23,7 +23,7 @@ function(write_registry layer row header)
     set(calls "")
     foreach(folder IN LISTS folders)
         string(APPEND declarations
-               "namespace ${folder} {\nstd::span<const ${row}> rows()\;\n}\n")
+               "namespace ${folder} {\nstd::span<const ${row}> rows();\n}\n")
         string(APPEND calls "${folder}::rows(), ")
     endforeach()
     set(file ${CMAKE_BINARY_DIR}/generated/${layer}_registry.cpp)

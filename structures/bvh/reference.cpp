@@ -1,6 +1,7 @@
 // The CPU builders; reference.hpp describes the method.
 #include "structures/bvh/reference.hpp"
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
@@ -205,8 +206,10 @@ class Build {
 Tree build_reference(const geometry::TriangleMesh& mesh, const ReferenceConfig& config) {
     if (config.max_leaf_size == 0)
         throw std::invalid_argument("build_reference: max_leaf_size is 0; give at least 1");
-    tbb::task_arena arena(config.threads ? static_cast<int>(config.threads)
-                                         : tbb::task_arena::automatic);
+    // More threads than cores gain nothing, and make TBB print a warning.
+    const int cores = tbb::info::default_concurrency();
+    tbb::task_arena arena(config.threads == 0 ? cores
+                                              : std::min(static_cast<int>(config.threads), cores));
     return arena.execute([&] { return Build(mesh, config).run(); });
 }
 

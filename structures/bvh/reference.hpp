@@ -36,7 +36,7 @@ struct ReferenceConfig {
     /// No leaf lies deeper (root: 0): a range that could not otherwise be finished in time is split
     /// at the object median from there on. At least ceil(log2(triangles)) for the promise to hold.
     std::uint32_t max_depth = 64;
-    unsigned threads = 0;  ///< 0: all cores
+    unsigned threads = 0;  ///< at most all cores; 0: all of them
     bool operator==(const ReferenceConfig&) const = default;
 };
 
