@@ -277,6 +277,25 @@ TEST_F(Gbuffer, TwoRunsAgreeInEveryBit) {
     EXPECT_EQ(a.primitive, b.primitive);
 }
 
+TEST_F(Gbuffer, TheUnitOfLengthDoesNotMatter) {
+    const auto render = [](float unit) {
+        TriangleMesh mesh = random_soup(7, 500, 0.4f, {0, 0, 0});
+        for (glm::vec3& position : mesh.positions) position *= unit;
+        const Camera camera{unit * glm::vec3(0.5f, 0.2f, 1.5f), {0, 0, 0}, {0, 1, 0}, 60};
+        return render_gbuffer(tests::device(), mesh, camera, 120, 80);
+    };
+    const GBuffer plain = render(1);
+    ASSERT_GT(plain.points.valid_count(), 0u);
+    for (const float unit : {0x1p-50f, 0x1p50f}) {  // powers of two round nothing
+        const GBuffer scaled = render(unit);
+        EXPECT_EQ(scaled.points.host().primitive, plain.points.host().primitive);
+        EXPECT_EQ(scaled.points.host().normal, plain.points.host().normal);
+        std::vector<float> x = plain.points.host().x;
+        for (float& value : x) value *= unit;
+        EXPECT_EQ(scaled.points.host().x, x);
+    }
+}
+
 TEST_F(Gbuffer, BadArgumentsAreNamed) {
     EXPECT_THROW(render_gbuffer(tests::device(), {}, Camera{}, 0, 10), std::invalid_argument);
     EXPECT_THROW(render_gbuffer(tests::device(), {}, Camera{}, 10, 4097), std::invalid_argument);
