@@ -1,0 +1,14 @@
+#include "experiments/scenes/generators.hpp"
+
+#include <array>
+
+#include "experiments/scenes/generator_rows.hpp"
+
+namespace experiments::scenes {
+
+std::span<const GeneratorRow> generators() {
+    static const std::array<GeneratorRow, 4> rows = {kSpheres, kCity, kPipes, kHairball};
+    return rows;
+}
+
+}  // namespace experiments::scenes
