@@ -46,8 +46,8 @@ void read_resolution(Table& table, Scene& scene) {
     if (!node) return;
     const auto side = [&](const Node& item) {
         const auto* value = std::get_if<std::int64_t>(&item.scalar);
-        if (item.kind != Node::Kind::scalar || !value || *value < 1 || *value > 16384)
-            fail(item, "'resolution' must hold two integers from 1 to 16384, [width, height]");
+        if (item.kind != Node::Kind::scalar || !value || *value < 1 || *value > 4096)
+            fail(item, "'resolution' must hold two integers from 1 to 4096, [width, height]");
         return std::uint32_t(*value);
     };
     if (node->kind != Node::Kind::array || node->items.size() != 2)
@@ -102,6 +102,9 @@ Scene read_scene(const Combination& combination, const Catalogue& catalogue, std
     if (scene.file.empty() == scene.generator.empty())
         fail(table.node(), "[[scene]] needs either 'file' or 'generator'; "
                            "e.g. --set scene.0.file=sponza.ply");
+    if (!scene.file.empty() && !std::filesystem::is_regular_file(scene.file))
+        fail(*table.find("file"), fmt::format("scene file '{}' does not exist; check the path",
+                                              scene.file.string()));
     const auto name = table.text("name");
     if (const Node* camera = table.find("camera")) scene.camera = read_camera(*camera);
     if (const Node* light = table.find("light")) scene.light = read_light(*light);
