@@ -10,6 +10,7 @@ void for_each_required(Chain& f, const Visit& visit) {
     visit(f.core.features.shaderFloat64, "shaderFloat64");
     visit(f.core.features.geometryShader, "geometryShader (primitive id in fragment shaders)");
     visit(f.core.features.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
+    visit(f.core.features.depthClamp, "depthClamp");
     visit(f.v12.bufferDeviceAddress, "bufferDeviceAddress");
     visit(f.v12.scalarBlockLayout, "scalarBlockLayout");
     visit(f.v12.vulkanMemoryModel, "vulkanMemoryModel");
