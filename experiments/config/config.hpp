@@ -14,7 +14,7 @@
 
 #include "experiments/config/catalogue.hpp"
 #include "experiments/config/node.hpp"
-#include "experiments/scenes/view.hpp"
+#include "experiments/scenes/views_file.hpp"
 #include "structures/geometry/light.hpp"
 
 namespace experiments::config {
