@@ -1,0 +1,98 @@
+#include "shadows/embree/embree.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+namespace shadows::embree {
+namespace {
+
+using structures::Samples;
+using structures::geometry::Light;
+
+constexpr std::uint32_t kProbePoints = 1 << 16;
+constexpr int kProbeRounds = 3;
+
+Trace trace_of(std::uint32_t width) {
+    switch (width) {
+        case 0:
+            return nullptr;
+        case 1:
+            return trace_single;
+        case 8:
+            return trace_packets_8;
+        case 16:
+            return trace_packets_16;
+        case 64:
+            return trace_streams;
+        default:
+            throw std::invalid_argument(fmt::format(
+                "embree: width is {}; give 1, 8, 16, 64, or 0 for the faster packets", width));
+    }
+}
+
+}  // namespace
+
+EmbreeMethod::EmbreeMethod(const Config& config)
+    : config_(config),
+      scene_(config.threads),
+      workers_(config.threads),
+      trace_(trace_of(config.width)) {
+    if (config.chunk == 0 || config.chunk % kTilePoints != 0)
+        throw std::invalid_argument(
+            fmt::format("embree: chunk is {}; give a multiple of {}", config.chunk, kTilePoints));
+}
+
+void EmbreeMethod::prepare(const structures::geometry::TriangleMesh& mesh) {
+    scene_.load(mesh);
+    diagonal_ = glm::length(mesh.bounds().extent());
+    rays_.reset();
+    trace_ = trace_of(config_.width);  // width 0 decides anew for another scene
+}
+
+Samples EmbreeMethod::build(const Light& light) {
+    const double build_ms = scene_.build(config_.quality);
+    rays_ = std::make_unique<ShadowRays>(light, diagonal_, config_.bias);
+    return {{"build_ms", build_ms, "ms"},
+            {"memory_bytes", static_cast<double>(scene_.memory_bytes()), "bytes"}};
+}
+
+double EmbreeMethod::trace_all(Trace trace, const PointArrays& points, std::uint32_t stride,
+                               std::vector<std::uint32_t>& words) {
+    const auto count = static_cast<std::uint32_t>(points.x.size());
+    const std::uint32_t chunks = (count + config_.chunk - 1) / config_.chunk;
+    const auto begin = std::chrono::steady_clock::now();
+    workers_.run((chunks + stride - 1) / stride, [&](std::uint32_t i) {
+        const std::uint32_t first = i * stride * config_.chunk;
+        trace(scene_.handle(), *rays_, points, first, std::min(config_.chunk, count - first),
+              words);
+    });
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
+        .count();
+}
+
+Trace EmbreeMethod::faster_packets(const PointArrays& points) {
+    std::vector<std::uint32_t> words(points.x.size() / 32);
+    const auto stride = std::max(1u, static_cast<std::uint32_t>(points.x.size()) / kProbePoints);
+    double best_8 = INFINITY, best_16 = INFINITY;
+    for (int round = 0; round < kProbeRounds; ++round) {
+        best_8 = std::min(best_8, trace_all(trace_packets_8, points, stride, words));
+        best_16 = std::min(best_16, trace_all(trace_packets_16, points, stride, words));
+    }
+    return best_16 < best_8 ? trace_packets_16 : trace_packets_8;
+}
+
+Samples EmbreeMethod::query(const Points& points, Visibility& visible) {
+    if (!scene_.handle() || !rays_) throw std::logic_error("embree: query() before build()");
+    if (!trace_) trace_ = faster_packets(points.host());
+    visible.words.resize(points.count() / 32);
+    const double query_ms = trace_all(trace_, points.host(), 1, visible.words);
+    const double rays = points.valid_count();
+    return {{"query_ms", query_ms, "ms"},
+            {"rays", rays},
+            {"mrays_per_s", query_ms > 0 ? rays / query_ms * 1e-3 : 0, "Mrays/s"}};
+}
+
+}  // namespace shadows::embree

@@ -1,0 +1,11 @@
+// What this folder adds to the registry of structures.
+#include "structures/bvh/reference_builder.hpp"
+
+namespace structures::bvh {
+
+std::span<const StructureRow> rows() {
+    static const StructureRow all[] = {kReferenceRow};
+    return all;
+}
+
+}  // namespace structures::bvh
