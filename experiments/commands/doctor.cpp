@@ -38,9 +38,8 @@ void describe(const DeviceInfo& device, std::size_t index) {
                          VK_API_VERSION_MINOR(device.api_version), device.subgroup_size,
                          gib(device.memory_bytes), gib(device.max_allocation_bytes),
                          device.shared_memory_bytes / 1024));
-    line("", fmt::format("timestamps {}, shader clock {}, ray query {}, {} persistent workgroups",
+    line("", fmt::format("timestamps {}, ray query {}, {} persistent workgroups",
                          device.timestamp_period_ns > 0 ? "yes" : "no",
-                         device.has_shader_clock ? "yes" : "no",
                          device.has_ray_query ? "yes" : "no", device.persistent_workgroups));
     for (const std::string& feature : device.missing)
         line("", fmt::format("lacks {}: update the driver, or choose another --device", feature));
