@@ -2,6 +2,6 @@
 #include "experiments/commands/program.hpp"
 
 int main(int argc, char** argv) {
-    return experiments::commands::run_program(
-        argc, argv, {structures::registry(), shadows::registry()});
+    return experiments::commands::run_program(argc, argv,
+                                              {structures::registry(), shadows::registry()});
 }

@@ -81,7 +81,7 @@ int compare(const std::string& run_a, const std::string& run_b, double limit_per
                 continue;
             }
             const double worse = worsening(metric, *mate);
-            std::string note = worse == 0                ? ""
+            std::string note = worse == 0               ? ""
                                : overlap(metric, *mate) ? "within the spread"
                                : worse < 0              ? "better"
                                                         : "worse";
@@ -94,8 +94,8 @@ int compare(const std::string& run_a, const std::string& run_b, double limit_per
             rows.push_back({result.scene, result.method, result.variant, "", "-", "only in B"});
     fmt::print("{}", text_table(rows, 4));
     if (over > 0)
-        throw std::runtime_error(fmt::format("{} of B's metrics are worse than A's by more than {} %",
-                                             over, limit_percent));
+        throw std::runtime_error(fmt::format(
+            "{} of B's metrics are worse than A's by more than {} %", over, limit_percent));
     return 0;
 }
 

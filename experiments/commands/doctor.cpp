@@ -14,7 +14,9 @@ using taskpool::gpu::DeviceInfo;
 
 void line(const char* state, const std::string& text) { fmt::print("{:<8} {}\n", state, text); }
 
-std::string gib(std::uint64_t bytes) { return fmt::format("{:.1f} GiB", double(bytes) / (1u << 30)); }
+std::string gib(std::uint64_t bytes) {
+    return fmt::format("{:.1f} GiB", double(bytes) / (1u << 30));
+}
 
 /// True if an executable of that name is on the search path.
 bool on_path(const std::string& program) {
@@ -33,11 +35,11 @@ void describe(const DeviceInfo& device, std::size_t index) {
     line(device.usable() ? "ok" : "missing",
          fmt::format("device {}: {} ({}), {}", index, device.name, to_string(device.type),
                      device.driver));
-    line("", fmt::format("Vulkan {}.{}, subgroups of {}, {} memory, buffers up to {}, {} KiB shared",
-                         VK_API_VERSION_MAJOR(device.api_version),
-                         VK_API_VERSION_MINOR(device.api_version), device.subgroup_size,
-                         gib(device.memory_bytes), gib(device.max_allocation_bytes),
-                         device.shared_memory_bytes / 1024));
+    line("", fmt::format(
+                 "Vulkan {}.{}, subgroups of {}, {} memory, buffers up to {}, {} KiB shared",
+                 VK_API_VERSION_MAJOR(device.api_version), VK_API_VERSION_MINOR(device.api_version),
+                 device.subgroup_size, gib(device.memory_bytes), gib(device.max_allocation_bytes),
+                 device.shared_memory_bytes / 1024));
     line("", fmt::format("timestamps {}, ray query {}, {} persistent workgroups",
                          device.timestamp_period_ns > 0 ? "yes" : "no",
                          device.has_ray_query ? "yes" : "no", device.persistent_workgroups));
@@ -56,8 +58,8 @@ bool check_devices() {
     try {
         devices = taskpool::gpu::list_devices();
     } catch (const taskpool::gpu::Error& error) {
-        line("missing", fmt::format("Vulkan: {}; install libvulkan1 and mesa-vulkan-drivers",
-                                    error.what()));
+        line("missing",
+             fmt::format("Vulkan: {}; install libvulkan1 and mesa-vulkan-drivers", error.what()));
         return false;
     }
     bool usable = false;
@@ -66,8 +68,9 @@ bool check_devices() {
         usable = usable || devices[i].usable();
     }
     if (!usable)
-        line("missing", "a usable Vulkan device: install mesa-vulkan-drivers, which has one that "
-                        "runs on the CPU");
+        line("missing",
+             "a usable Vulkan device: install mesa-vulkan-drivers, which has one that "
+             "runs on the CPU");
     return usable;
 }
 
@@ -88,7 +91,8 @@ int doctor(const measure::Registries& registries) {
     if (on_path("git"))
         line("ok", "git: the manifest names the commit");
     else
-        line("warning", "git is not installed: the manifest names the commit of the last configure");
+        line("warning",
+             "git is not installed: the manifest names the commit of the last configure");
     if (on_path("chromium"))
         line("ok", "chromium: the test of the report can run");
     else

@@ -67,16 +67,15 @@ json experiments_list() {
 json devices_list() {
     json list = json::array();
     for (const auto& device : taskpool::gpu::list_devices())
-        list.push_back(
-            {{"name", device.name},
-             {"summary", fmt::format("{}, {}{}", to_string(device.type), device.driver,
-                                     device.usable() ? "" : ", lacks what grove needs")},
-             {"driver", device.driver},
-             {"type", to_string(device.type)},
-             {"subgroup_size", device.subgroup_size},
-             {"memory_bytes", device.memory_bytes},
-             {"usable", device.usable()},
-             {"missing", device.missing}});
+        list.push_back({{"name", device.name},
+                        {"summary", fmt::format("{}, {}{}", to_string(device.type), device.driver,
+                                                device.usable() ? "" : ", lacks what grove needs")},
+                        {"driver", device.driver},
+                        {"type", to_string(device.type)},
+                        {"subgroup_size", device.subgroup_size},
+                        {"memory_bytes", device.memory_bytes},
+                        {"usable", device.usable()},
+                        {"missing", device.missing}});
     for (std::size_t i = 0; i < list.size(); ++i) list[i]["index"] = i;
     return list;
 }
@@ -111,10 +110,10 @@ int list(const std::string& what, bool as_json, const measure::Registries& regis
     else if (what == "metrics")
         entries = metrics_list();
     else
-        throw config::ConfigError(
-            "list: " + config::unknown("kind of thing", what,
-                                       {"structures", "shadows", "scenes", "experiments",
-                                        "devices", "metrics"}));
+        throw config::ConfigError("list: " +
+                                  config::unknown("kind of thing", what,
+                                                  {"structures", "shadows", "scenes", "experiments",
+                                                   "devices", "metrics"}));
     if (as_json) {
         fmt::print("{}\n", entries.dump(2));
         return 0;

@@ -30,7 +30,8 @@ int parse_and_run(int argc, const char* const* argv, const measure::Registries& 
     CLI::App* run_command = app.add_subcommand("run", "run the experiments of config files");
     run_command->add_option("CONFIG", request.configs, "config files (TOML)")->required();
     run_command->add_option("--out", request.out, "folder of the run; default runs/NAME-TIME");
-    run_command->add_option("--set", request.assignments, "KEY=VALUE: override, e.g. method.0.stack=16")
+    run_command
+        ->add_option("--set", request.assignments, "KEY=VALUE: override, e.g. method.0.stack=16")
         ->allow_extra_args(false);
     run_command->add_option("--device", request.device, "index from `grove list devices`")
         ->check(CLI::NonNegativeNumber);
@@ -43,8 +44,7 @@ int parse_and_run(int argc, const char* const* argv, const measure::Registries& 
     bool as_json = false;
     CLI::App* list_command = app.add_subcommand("list", "list what there is");
     list_command
-        ->add_option("WHAT", what,
-                     "structures, shadows, scenes, experiments, devices or metrics")
+        ->add_option("WHAT", what, "structures, shadows, scenes, experiments, devices or metrics")
         ->required();
     list_command->add_flag("--json", as_json, "with all keys, as JSON");
 

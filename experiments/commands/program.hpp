@@ -9,8 +9,8 @@
 namespace experiments::commands {
 
 /// Runs what `argv` asks for, with these structures and methods. Returns the exit code: 0 done, 1
-/// the work failed or a limit was passed, 2 the command line or a config is at fault. Every error is
-/// one line on stderr, "grove: error: ...".
+/// the work failed or a limit was passed, 2 the command line or a config is at fault. Every error
+/// is one line on stderr, "grove: error: ...".
 int run_program(int argc, const char* const* argv, const measure::Registries& registries);
 
 struct RunRequest {

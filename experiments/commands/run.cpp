@@ -11,8 +11,8 @@
 namespace experiments::commands {
 namespace {
 
-constexpr const char* kColumns[] = {"build_ms",  "query_ms",         "total_ms",    "sah_cost",
-                                    "shadowed",  "differing_points", "memory_bytes"};
+constexpr const char* kColumns[] = {"build_ms", "query_ms",         "total_ms",    "sah_cost",
+                                    "shadowed", "differing_points", "memory_bytes"};
 
 /// SPIR-V from `folder`/<shader path>.spv, as the build leaves it in its `shaders` folder.
 std::optional<std::vector<std::uint32_t>> read_shader(const std::filesystem::path& folder,
@@ -40,8 +40,8 @@ taskpool::gpu::DeviceOptions device_options(const RunRequest& request) {
 void check_device_index(int index) {
     const int count = int(taskpool::gpu::list_devices().size());
     if (count > 0 && index >= count)
-        throw config::ConfigError(fmt::format(
-            "--device {}: there are {} devices; see grove list devices", index, count));
+        throw config::ConfigError(
+            fmt::format("--device {}: there are {} devices; see grove list devices", index, count));
 }
 
 std::string results_table(const std::vector<measure::ResultSummary>& results) {
@@ -87,8 +87,8 @@ int run(const RunRequest& request, const measure::Registries& registries) {
     try {
         device = std::make_unique<taskpool::gpu::Device>(options);
     } catch (const taskpool::gpu::Error& error) {
-        throw std::runtime_error(fmt::format("no Vulkan device to run on: {}; see grove doctor",
-                                             error.what()));
+        throw std::runtime_error(
+            fmt::format("no Vulkan device to run on: {}; see grove doctor", error.what()));
     }
     int code = 0;
     for (const config::Config& config : configs) {

@@ -1,5 +1,6 @@
 // What a config may name: the scene generators, structures and shadow methods of this program, each
-// with the keys it takes. Read from the registries once, so that a config is checked without a device.
+// with the keys it takes. Read from the registries once, so that a config is checked without a
+// device.
 #pragma once
 
 #include <span>

@@ -30,8 +30,9 @@ std::string read_kind(Table& table) {
     if (contains(kinds())) return kind;
     const std::string available = fmt::format("{}", fmt::join(kinds(), ", "));
     if (contains(kLaterKinds))
-        fail(*table.find("kind"), fmt::format("kind '{}' is not available in this version; available: {}",
-                                              kind, available));
+        fail(*table.find("kind"),
+             fmt::format("kind '{}' is not available in this version; available: {}", kind,
+                         available));
     fail(*table.find("kind"), unknown("kind", kind, kinds()));
 }
 
@@ -86,11 +87,11 @@ nlohmann::json to_json(const Scene& scene) {
                           {"fov_y_degrees", scene.camera->fov_y_degrees}};
     using structures::geometry::Light;
     if (scene.light)
-        json["light"] = scene.light->type == Light::Type::point
-                            ? nlohmann::json{{"type", "point"},
-                                             {"position", to_json(scene.light->vector)}}
-                            : nlohmann::json{{"type", "directional"},
-                                             {"direction", to_json(scene.light->vector)}};
+        json["light"] =
+            scene.light->type == Light::Type::point
+                ? nlohmann::json{{"type", "point"}, {"position", to_json(scene.light->vector)}}
+                : nlohmann::json{{"type", "directional"},
+                                 {"direction", to_json(scene.light->vector)}};
     return json;
 }
 
@@ -111,8 +112,9 @@ Config resolve(const Node& root, const std::filesystem::path& file, const Catalo
     config.name = table.text("name").value_or(file.stem().string());
     if (config.name.empty() || config.name.find_first_of("/\\\n") != std::string::npos ||
         config.name.front() == '.')
-        fail(*table.find("name"), "'name' becomes the name of a folder; expected letters, digits, "
-                                  "dashes and underscores");
+        fail(*table.find("name"),
+             "'name' becomes the name of a folder; expected letters, digits, "
+             "dashes and underscores");
     config.kind = read_kind(table);
     config.repeat = int(table.integer("repeat", 1, 100000).value_or(config.repeat));
     config.warmup = int(table.integer("warmup", 0, 100000).value_or(config.warmup));
@@ -140,12 +142,15 @@ Config load(const std::filesystem::path& file, const std::vector<std::string>& a
 }
 
 nlohmann::json to_json(const Config& config) {
-    nlohmann::json json = {{"name", config.name},     {"kind", config.kind},
-                           {"repeat", config.repeat}, {"warmup", config.warmup},
-                           {"seed", config.seed},     {"scenes", nlohmann::json::array()},
+    nlohmann::json json = {{"name", config.name},
+                           {"kind", config.kind},
+                           {"repeat", config.repeat},
+                           {"warmup", config.warmup},
+                           {"seed", config.seed},
+                           {"scenes", nlohmann::json::array()},
                            {"methods", nlohmann::json::array()}};
-    json["reference"] = config.methods[config.reference].name + " " +
-                        config.methods[config.reference].variant;
+    json["reference"] =
+        config.methods[config.reference].name + " " + config.methods[config.reference].variant;
     for (const Scene& scene : config.scenes) json["scenes"].push_back(to_json(scene));
     for (const Method& method : config.methods)
         json["methods"].push_back({{"name", method.name},

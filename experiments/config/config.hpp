@@ -20,7 +20,7 @@
 namespace experiments::config {
 
 struct Scene {
-    std::string name;  ///< unique in the config; the `scene` column of the results
+    std::string name;                 ///< unique in the config; the `scene` column of the results
     std::filesystem::path file;       ///< empty: generated
     std::string generator;            ///< empty: loaded
     structures::Settings settings{};  ///< of the generator

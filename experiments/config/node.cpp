@@ -6,9 +6,9 @@
 #include <fstream>
 #include <iterator>
 
-// The parser checks its own expectations with TOML_ASSERT; malformed input can violate them, so they
-// must throw. With NDEBUG the library would turn them into undefined behaviour instead. (Some of its
-// functions are noexcept; those expectations do not depend on the input.)
+// The parser checks its own expectations with TOML_ASSERT; malformed input can violate them, so
+// they must throw. With NDEBUG the library would turn them into undefined behaviour instead. (Some
+// of its functions are noexcept; those expectations do not depend on the input.)
 #pragma GCC diagnostic ignored "-Wterminate"
 #undef NDEBUG
 #define TOML_ASSERT(expression) \
@@ -131,8 +131,8 @@ Node parse_text(std::string_view text, const std::string& name,
     try {
         return convert(toml::parse(text), name, folder);
     } catch (const toml::parse_error& error) {
-        throw ConfigError(fmt::format("{}:{}: {}", name, error.source().begin.line,
-                                      error.description()));
+        throw ConfigError(
+            fmt::format("{}:{}: {}", name, error.source().begin.line, error.description()));
     } catch (const std::logic_error& error) {
         throw ConfigError(fmt::format("{}: malformed TOML ({})", name, error.what()));
     }
@@ -144,8 +144,9 @@ Node parse_file(const std::filesystem::path& file) {
         throw ConfigError(file.string() + ": is a folder; expected a config file (.toml)");
     std::ifstream stream(file, std::ios::binary);
     if (!stream)
-        throw ConfigError(file.string() +
-                          ": cannot be opened; check the path (configs lie in experiments/configs)");
+        throw ConfigError(
+            file.string() +
+            ": cannot be opened; check the path (configs lie in experiments/configs)");
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     return parse_text(text, file.string(), std::filesystem::absolute(file).parent_path());
 }
@@ -155,8 +156,8 @@ void override_value(Node& root, const std::string& assignment) {
     const std::string path = assignment.substr(0, equals);
     const std::string place = "--set " + path;
     if (equals == std::string::npos || equals == 0)
-        throw ConfigError(fmt::format("--set {}: expected KEY=VALUE, e.g. --set method.0.stack=16",
-                                      assignment));
+        throw ConfigError(
+            fmt::format("--set {}: expected KEY=VALUE, e.g. --set method.0.stack=16", assignment));
     Node* node = &root;
     for (std::size_t begin = 0; begin <= path.size();) {
         const std::size_t end = std::min(path.find('.', begin), path.size());
@@ -166,8 +167,8 @@ void override_value(Node& root, const std::string& assignment) {
         // A new list starts where a number follows a key that did not exist.
         if (node->kind == Node::Kind::table && node->keys.empty() && is_number(part))
             node->kind = Node::Kind::array;
-        node = node->kind == Node::Kind::array ? &element(*node, part, place)
-                                               : &node->at_or_add(part);
+        node =
+            node->kind == Node::Kind::array ? &element(*node, part, place) : &node->at_or_add(part);
         begin = end + 1;
     }
     *node = parse_value(assignment.substr(equals + 1), place);

@@ -25,11 +25,11 @@ struct ConfigError : std::runtime_error {
 struct Node {
     enum class Kind { scalar, array, table };
     Kind kind = Kind::table;
-    structures::Value scalar{};      ///< of a scalar
-    std::vector<Node> items;         ///< of an array, or a table's values
-    std::vector<std::string> keys;   ///< of a table, parallel to `items`
-    std::string place;               ///< "file.toml:12" or "--set method.0.stack"
-    std::filesystem::path folder;    ///< what relative paths written here start from
+    structures::Value scalar{};     ///< of a scalar
+    std::vector<Node> items;        ///< of an array, or a table's values
+    std::vector<std::string> keys;  ///< of a table, parallel to `items`
+    std::string place;              ///< "file.toml:12" or "--set method.0.stack"
+    std::filesystem::path folder;   ///< what relative paths written here start from
 
     /// The value of `key` in a table, or nullptr.
     const Node* find(std::string_view key) const;
@@ -50,8 +50,8 @@ Node parse_text(std::string_view text, const std::string& name,
                 const std::filesystem::path& folder);
 
 /// Applies one `--set KEY=VALUE`. KEY is dotted, numbers index lists (one past the end appends).
-/// VALUE is TOML; what TOML does not accept is taken as a string. Relative paths in it start from the
-/// working directory.
+/// VALUE is TOML; what TOML does not accept is taken as a string. Relative paths in it start from
+/// the working directory.
 void override_value(Node& root, const std::string& assignment);
 
 }  // namespace experiments::config

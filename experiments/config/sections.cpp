@@ -18,20 +18,15 @@ scenes::Camera read_camera(const Node& node) {
     camera.eye = table.required("eye", table.vector("eye"));
     camera.target = table.required("target", table.vector("target"));
     camera.up = table.vector("up").value_or(glm::vec3(0, 1, 0));
-    camera.fov_y_degrees = float(table.real("fov_y_degrees").value_or(60));
+    camera.fov_y_degrees = float(table.real("fov_y_degrees").value_or(camera.fov_y_degrees));
     table.finish();
-    if (!(camera.fov_y_degrees > 0 && camera.fov_y_degrees < 180))
-        fail(node, "'fov_y_degrees' must lie between 0 and 180");
-    if (glm::cross(glm::dvec3(camera.target) - glm::dvec3(camera.eye), glm::dvec3(camera.up)) ==
-        glm::dvec3(0))
-        fail(node, "'camera' looks nowhere: 'target' equals 'eye', or 'up' is along the view");
+    if (const std::string fault = camera.fault(); !fault.empty()) fail(node, "'camera': " + fault);
     return camera;
 }
 
 Light read_light(const Node& node) {
     Table table(node, "'light'");
-    const std::string type =
-        table.required("type", table.choice("type", {"point", "directional"}));
+    const std::string type = table.required("type", table.choice("type", {"point", "directional"}));
     const bool point = type == "point";
     const std::string key = point ? "position" : "direction";
     const Light light{point ? Light::Type::point : Light::Type::directional,
@@ -100,11 +95,12 @@ Scene read_scene(const Combination& combination, const Catalogue& catalogue, std
     scene.file = table.path("file").value_or("");
     scene.generator = table.text("generator").value_or("");
     if (scene.file.empty() == scene.generator.empty())
-        fail(table.node(), "[[scene]] needs either 'file' or 'generator'; "
-                           "e.g. --set scene.0.file=sponza.ply");
+        fail(table.node(),
+             "[[scene]] needs either 'file' or 'generator'; "
+             "e.g. --set scene.0.file=sponza.ply");
     if (!scene.file.empty() && !std::filesystem::is_regular_file(scene.file))
-        fail(*table.find("file"), fmt::format("scene file '{}' does not exist; check the path",
-                                              scene.file.string()));
+        fail(*table.find("file"),
+             fmt::format("scene file '{}' does not exist; check the path", scene.file.string()));
     const auto name = table.text("name");
     if (const Node* camera = table.find("camera")) scene.camera = read_camera(*camera);
     if (const Node* light = table.find("light")) scene.light = read_light(*light);
@@ -122,8 +118,7 @@ Scene read_scene(const Combination& combination, const Catalogue& catalogue, std
     scene.generator.empty() ? table.finish() : read_generator(table, catalogue, seed, scene);
 
     scene.name = name ? *name : scene.file.empty() ? scene.generator : stem(scene.file);
-    const std::string label =
-        sweep_label(combination, {"file", "generator", "name", "view"});
+    const std::string label = sweep_label(combination, {"file", "generator", "name", "view"});
     if (!label.empty()) scene.name += "," + label;
     return scene;
 }
@@ -153,8 +148,8 @@ void take_view(Scene& scene, const std::string& name, const Node& node) {
 void read_scenes(const Node& node, const Catalogue& catalogue, std::int64_t seed,
                  std::vector<Scene>& scenes) {
     if (node.kind != Node::Kind::table)
-        fail(node, fmt::format("'scene' holds {}; expected a list of tables, [[scene]]",
-                               describe(node)));
+        fail(node,
+             fmt::format("'scene' holds {}; expected a list of tables, [[scene]]", describe(node)));
     for (const Combination& combination : expand(node)) {
         const Scene scene = read_scene(combination, catalogue, seed);
         if (scene.views.empty()) {
@@ -184,8 +179,8 @@ void read_methods(const Node& node, const Entries& entries, const std::string& w
         if (!entry) fail(*table.find("name"), unknown(what, method.name, names(entries)));
         method.settings = read_settings(table, *entry);
 
-        // The label: what the config calls it, else the keys that differ from the method's defaults;
-        // and the swept keys, which tell the combinations of one table apart.
+        // The label: what the config calls it, else the keys that differ from the method's
+        // defaults; and the swept keys, which tell the combinations of one table apart.
         std::vector<std::string> in_label{"name", "variant"};
         if (!variant) {
             method.variant = method.settings.label();

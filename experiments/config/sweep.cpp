@@ -28,8 +28,8 @@ std::vector<Combination> expand(const Node& table) {
         const Node& list = table.items[k];
         if (!sweeps(table.keys[k], list)) continue;
         if (list.items.empty())
-            fail(list, fmt::format("'{}' is an empty list; expected at least one value",
-                                   table.keys[k]));
+            fail(list,
+                 fmt::format("'{}' is an empty list; expected at least one value", table.keys[k]));
         std::vector<Combination> longer;
         for (const Combination& combination : combinations) {
             for (const Node& item : list.items) {

@@ -8,7 +8,8 @@
 namespace experiments::config {
 namespace {
 
-[[noreturn]] void wrong_type(const Node& node, const std::string& key, const std::string& expected) {
+[[noreturn]] void wrong_type(const Node& node, const std::string& key,
+                             const std::string& expected) {
     fail(node, fmt::format("'{}' is {}; expected {}", key, describe(node), expected));
 }
 
@@ -24,9 +25,9 @@ std::optional<double> as_real(const Node& node) {
 std::string unknown(const std::string& what, const std::string& word,
                     const std::vector<std::string>& known) {
     const std::string near = structures::closest(word, known);
-    return near.empty() ? fmt::format("unknown {} '{}'; known: {}", what, word,
-                                      fmt::join(known, ", "))
-                        : fmt::format("unknown {} '{}'; did you mean '{}'?", what, word, near);
+    return near.empty()
+               ? fmt::format("unknown {} '{}'; known: {}", what, word, fmt::join(known, ", "))
+               : fmt::format("unknown {} '{}'; did you mean '{}'?", what, word, near);
 }
 
 Table::Table(const Node& node, std::string title) : node_(node), title_(std::move(title)) {
@@ -73,7 +74,8 @@ std::optional<double> Table::real(const std::string& key) {
     if (!node) return {};
     const auto value = as_real(*node);
     if (!value) wrong_type(*node, key, "a number");
-    if (!std::isfinite(*value)) fail(*node, fmt::format("'{}' is {}; expected a finite number", key, *value));
+    if (!std::isfinite(*value))
+        fail(*node, fmt::format("'{}' is {}; expected a finite number", key, *value));
     return value;
 }
 

@@ -2,7 +2,8 @@
 //
 //     Table table(node, "[experiment]");
 //     const std::int64_t repeat = table.integer("repeat", 1, 10000).value_or(5);
-//     table.finish();            // "x.toml:4: unknown key 'repat' in [experiment]; did you mean ..."
+//     table.finish();            // "x.toml:4: unknown key 'repat' in [experiment]; did you mean
+//     ..."
 #pragma once
 
 #include <glm/glm.hpp>

@@ -36,8 +36,7 @@ structures::Samples build(Session& session, Contestant& contestant) {
     taskpool::gpu::Device& device = session.device;
     const std::uint64_t others = device.allocated_bytes() - contestant.own_bytes;
     device.reset_peak();
-    const taskpool::pool::RunStats stats =
-        taskpool::pool::run(device, contestant.builder->job());
+    const taskpool::pool::RunStats stats = taskpool::pool::run(device, contestant.builder->job());
     const std::uint64_t peak = device.peak_bytes() - others;
     contestant.own_bytes = device.allocated_bytes() - others;
     structures::Samples samples = {{"build_ms", stats.gpu_ms, "ms"},

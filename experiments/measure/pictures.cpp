@@ -12,8 +12,8 @@ namespace {
 
 using image::Image;
 
-/// A file name from any label: other characters become '_', and a long or changed name is told apart
-/// by the start of its hash.
+/// A file name from any label: other characters become '_', and a long or changed name is told
+/// apart by the start of its hash.
 std::string file_name(const std::string& label) {
     std::string name = label.substr(0, 80);
     for (char& c : name)
@@ -87,21 +87,18 @@ void Pictures::difference(const shadows::Points& points, const shadows::Visibili
     for (int y = 0; y < sign.height; ++y)
         for (int x = 0; x < sign.width; ++x)
             if (const float value = sign.at(x, y, 0); value != 0)
-                for (int c = 0; c < 3; ++c)
-                    preview.at(x, y, c) = image::signed_color(value)[c];
+                for (int c = 0; c < 3; ++c) preview.at(x, y, c) = image::signed_color(value)[c];
     save("difference", sign, "difference", preview);
 }
 
 void Pictures::heat(const shadows::Points& points, const std::vector<float>& cost) {
     if (cost.size() != points.count()) return;
-    const Image picture =
-        per_pixel(points, 1, [&](std::uint32_t i) { return glm::vec1(cost[i]); });
+    const Image picture = per_pixel(points, 1, [&](std::uint32_t i) { return glm::vec1(cost[i]); });
     std::vector<float> sorted = picture.values;
     const auto rank = sorted.begin() + std::ptrdiff_t(0.99 * double(sorted.size() - 1));
     std::nth_element(sorted.begin(), rank, sorted.end());
     save("heat", picture, "cost",
-         image::heat_image(picture.values, picture.width, picture.height, 0,
-                           std::max(1.f, *rank)));
+         image::heat_image(picture.values, picture.width, picture.height, 0, std::max(1.f, *rank)));
 }
 
 void Pictures::save(const std::string& kind, const Image& exact, const std::string& channel,

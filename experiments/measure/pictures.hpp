@@ -26,7 +26,8 @@ class Pictures {
     /// only the reference does. EXR (1, -1, 0) and PNG; nothing if they agree.
     void difference(const shadows::Points& points, const shadows::Visibility& visible,
                     std::span<const std::uint32_t> reference);
-    /// Cost per point, 0 dark to the 99th percentile bright. EXR and PNG; nothing if `cost` is empty.
+    /// Cost per point, 0 dark to the 99th percentile bright. EXR and PNG; nothing if `cost` is
+    /// empty.
     void heat(const shadows::Points& points, const std::vector<float>& cost);
 
   private:

@@ -16,7 +16,8 @@
 namespace experiments::measure {
 namespace {
 
-/// Standard output of `git -C <source> arguments`, without the last line break; nothing if it fails.
+/// Standard output of `git -C <source> arguments`, without the last line break; nothing if it
+/// fails.
 std::optional<std::string> git(const std::string& arguments) {
     std::string folder;  // in single quotes, as the shell wants it
     for (char c : source_folder()) folder += c == '\'' ? "'\\''" : std::string(1, c);
@@ -25,7 +26,8 @@ std::optional<std::string> git(const std::string& arguments) {
     if (!pipe) return {};
     std::string output;
     char block[4096];
-    for (std::size_t n; (n = std::fread(block, 1, sizeof block, pipe)) > 0;) output.append(block, n);
+    for (std::size_t n; (n = std::fread(block, 1, sizeof block, pipe)) > 0;)
+        output.append(block, n);
     if (::pclose(pipe) != 0) return {};
     while (!output.empty() && output.back() == '\n') output.pop_back();
     return output;
@@ -48,7 +50,9 @@ int usable_cores() {
 
 std::string source_folder() { return kSourceFolder; }
 
-std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
+std::string utc_now() {
+    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
 
 nlohmann::json program_provenance() {
     nlohmann::json json = {{"version", kVersion},

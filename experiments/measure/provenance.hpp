@@ -6,8 +6,8 @@
 
 namespace experiments::measure {
 
-/// Compiler, flags, build type; git commit and whether the tree is dirty, asked now where the source
-/// folder still is, as they were at configuration otherwise.
+/// Compiler, flags, build type; git commit and whether the tree is dirty, asked now where the
+/// source folder still is, as they were at configuration otherwise.
 nlohmann::json program_provenance();
 
 /// CPU model, cores this process may use, memory, operating system.

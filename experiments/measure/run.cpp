@@ -7,11 +7,10 @@ namespace experiments::measure {
 RunOutcome run_experiment(taskpool::gpu::Device& device, const config::Config& config,
                           const Registries& registries, const RunOptions& options,
                           Progress& progress) {
-    const std::filesystem::path path = options.out.empty()
-                                           ? fresh_folder(config.name)
-                                           : std::filesystem::absolute(options.out).lexically_normal();
-    RunFolder folder =
-        open_run(path, options.resume, config, device.info(), options.command_line);
+    const std::filesystem::path path =
+        options.out.empty() ? fresh_folder(config.name)
+                            : std::filesystem::absolute(options.out).lexically_normal();
+    RunFolder folder = open_run(path, options.resume, config, device.info(), options.command_line);
     progress.log_to(path / "log.txt");
     RunOutcome outcome{path, {}, {}};
     try {

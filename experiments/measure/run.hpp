@@ -18,8 +18,8 @@ struct RunOutcome {
     std::vector<std::string> failures;  ///< empty: all went well
 };
 
-/// Throws ConfigError before any work, OutputError or gpu::Error when the run cannot go on; what was
-/// measured until then is in the folder.
+/// Throws ConfigError before any work, OutputError or gpu::Error when the run cannot go on; what
+/// was measured until then is in the folder.
 RunOutcome run_experiment(taskpool::gpu::Device& device, const config::Config& config,
                           const Registries& registries, const RunOptions& options,
                           Progress& progress);

@@ -55,12 +55,11 @@ std::string difference(const nlohmann::json& old, const nlohmann::json& fresh) {
     if (old.at("inputs") != fresh.at("inputs"))
         return "its input files have changed; start a new run";
     if (old.at("device") != fresh.at("device"))
-        return fmt::format("it was made on '{}', this is '{}'; choose that with --device, or a new "
-                           "--out",
-                           old.at("device").value("name", "?") + ", " +
-                               old.at("device").value("driver", "?"),
-                           fresh.at("device").value("name", "?") + ", " +
-                               fresh.at("device").value("driver", "?"));
+        return fmt::format(
+            "it was made on '{}', this is '{}'; choose that with --device, or a new "
+            "--out",
+            old.at("device").value("name", "?") + ", " + old.at("device").value("driver", "?"),
+            fresh.at("device").value("name", "?") + ", " + fresh.at("device").value("driver", "?"));
     return {};
 }
 
@@ -79,7 +78,8 @@ void write_text(const fs::path& path, const std::string& text) {
 nlohmann::json read_json(const fs::path& path) {
     std::ifstream stream(path);
     if (!stream)
-        throw std::runtime_error(path.string() + ": cannot be opened; expected the folder of a run");
+        throw std::runtime_error(path.string() +
+                                 ": cannot be opened; expected the folder of a run");
     try {
         return nlohmann::json::parse(stream);
     } catch (const nlohmann::json::exception& error) {
@@ -91,7 +91,8 @@ fs::path fresh_folder(const std::string& name) {
     const std::string stamp =
         fmt::format("{}-{:%Y%m%dT%H%M%SZ}", name, fmt::gmtime(std::time(nullptr)));
     fs::path path = fs::absolute("runs") / stamp;
-    for (int i = 2; fs::exists(path); ++i) path = fs::absolute("runs") / fmt::format("{}-{}", stamp, i);
+    for (int i = 2; fs::exists(path); ++i)
+        path = fs::absolute("runs") / fmt::format("{}-{}", stamp, i);
     return path;
 }
 
@@ -110,24 +111,25 @@ RunFolder open_run(const fs::path& path, bool resume, const config::Config& conf
     const fs::path manifest = path / "manifest.json";
     if (fs::exists(manifest)) {
         if (!resume)
-            throw ConfigError(fmt::format("--out {}: holds a run already; continue it with --resume, "
-                                          "or choose another folder",
-                                          path.string()));
+            throw ConfigError(
+                fmt::format("--out {}: holds a run already; continue it with --resume, "
+                            "or choose another folder",
+                            path.string()));
         folder.manifest = read_json(manifest);
         const std::string why = difference(folder.manifest, fresh);
         if (!why.empty())
-            throw ConfigError(fmt::format("--resume {}: cannot be continued: {}", path.string(), why));
+            throw ConfigError(
+                fmt::format("--resume {}: cannot be continued: {}", path.string(), why));
     } else if (fs::exists(path) && !fs::is_directory(path)) {
         throw ConfigError(fmt::format("--out {}: is no folder; choose another", path.string()));
     }
     make_writable(path);
-    folder.manifest["sessions"].push_back(
-        {{"start", utc_now()},
-         {"end", nullptr},
-         {"command_line", command_line},
-         {"git_commit", fresh["program"]["git_commit"]},
-         {"git_dirty", fresh["program"]["git_dirty"]},
-         {"exit", nullptr}});
+    folder.manifest["sessions"].push_back({{"start", utc_now()},
+                                           {"end", nullptr},
+                                           {"command_line", command_line},
+                                           {"git_commit", fresh["program"]["git_commit"]},
+                                           {"git_dirty", fresh["program"]["git_dirty"]},
+                                           {"exit", nullptr}});
     write_text(manifest, folder.manifest.dump(2) + "\n");
     return folder;
 }

@@ -77,7 +77,8 @@ Contents read(const std::filesystem::path& path) {
         Row row;
         if (f.size() != 8 || !parse(f[3], row.key.frame) || !parse(f[4], row.key.repetition) ||
             !parse(f[6], row.sample.value))
-            throw std::runtime_error(fmt::format("{}:{}: is no row of samples", path.string(), line));
+            throw std::runtime_error(
+                fmt::format("{}:{}: is no row of samples", path.string(), line));
         row.key.scene = f[0];
         row.key.method = f[1];
         row.key.variant = f[2];
@@ -130,9 +131,9 @@ void SamplesFile::append(const Key& key, const structures::Samples& samples) {
 
 void SamplesFile::write(const std::string& text) {
     const auto fail = [&] {
-        throw OutputError(fmt::format(
-            "{}: cannot be written: {}; make room, then go on with --resume --out {}",
-            path_.string(), std::strerror(errno), path_.parent_path().string()));
+        throw OutputError(
+            fmt::format("{}: cannot be written: {}; make room, then go on with --resume --out {}",
+                        path_.string(), std::strerror(errno), path_.parent_path().string()));
     };
     for (std::size_t done = 0; done < text.size();) {
         const ssize_t count = ::write(file_, text.data() + done, text.size() - done);

@@ -21,8 +21,8 @@ struct Registries {
     std::span<const shadows::MethodRow> methods;
 };
 
-/// The `method` of rows that describe a scene itself. They are written when all else of the scene is
-/// done, so their presence says so.
+/// The `method` of rows that describe a scene itself. They are written when all else of the scene
+/// is done, so their presence says so.
 inline constexpr const char* kSceneRows = "(scene)";
 
 struct Session {

@@ -64,8 +64,8 @@ class SceneRun {
         session_.step(scene_.name + ": loading");
         --session_.steps_done;
         const SceneInput input = load_scene(scene_);
-        const gbuffer::GBuffer gbuffer = gbuffer::render_gbuffer(session_.device, input.mesh, input.camera,
-                                               scene_.width, scene_.height);
+        const gbuffer::GBuffer gbuffer = gbuffer::render_gbuffer(
+            session_.device, input.mesh, input.camera, scene_.width, scene_.height);
         points_ = &gbuffer.points;
         mask_ = geometry_mask(gbuffer.points);
         if (gbuffer.points.valid_count() == 0)
@@ -83,12 +83,11 @@ class SceneRun {
         // A scene with a failure stays open, so that --resume tries it again.
         for (const Contestant& contestant : contestants_)
             if (!contestant.method) return;
-        session_.samples.append(
-            {scene_.name, kSceneRows, "", 0, 0},
-            {{"gbuffer_ms", gbuffer.milliseconds, "ms"},
-             {"points", double(gbuffer.points.valid_count())},
-             {"triangles", double(input.mesh.triangle_count())},
-             {"degenerate", double(input.report.degenerate)}});
+        session_.samples.append({scene_.name, kSceneRows, "", 0, 0},
+                                {{"gbuffer_ms", gbuffer.milliseconds, "ms"},
+                                 {"points", double(gbuffer.points.valid_count())},
+                                 {"triangles", double(input.mesh.triangle_count())},
+                                 {"degenerate", double(input.report.degenerate)}});
     }
 
   private:
@@ -129,8 +128,7 @@ class SceneRun {
         for (std::size_t w = 0; w < mask_.size(); ++w) {
             const std::uint32_t lit = contestant.visible.words[w];
             shadowed += std::popcount(~lit & mask_[w]);
-            if (!reference_.empty())
-                differing += std::popcount((lit ^ reference_[w]) & mask_[w]);
+            if (!reference_.empty()) differing += std::popcount((lit ^ reference_[w]) & mask_[w]);
         }
         samples.push_back({"points", double(points_->valid_count())});
         samples.push_back({"shadowed", shadowed});

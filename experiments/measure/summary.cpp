@@ -18,7 +18,10 @@ std::string with_separators(double value) {
 std::string four_digits(double value) {
     const double size = std::abs(value);
     return size >= 1000 ? with_separators(value)
-                        : fmt::format("{:.{}f}", value, size >= 100 ? 1 : size >= 10 ? 2 : 3);
+                        : fmt::format("{:.{}f}", value,
+                                      size >= 100  ? 1
+                                      : size >= 10 ? 2
+                                                   : 3);
 }
 
 }  // namespace
@@ -62,8 +65,9 @@ nlohmann::json to_json(std::span<const ResultSummary> results) {
     for (const ResultSummary& result : results) {
         nlohmann::json metrics = nlohmann::json::object();
         for (const auto& [metric, unit, s] : result.metrics)
-            metrics[metric] = {{"median", s.median}, {"min", s.min},       {"max", s.max},
-                               {"mean", s.mean},     {"stddev", s.stddev}, {"n", s.n},
+            metrics[metric] = {{"median", s.median}, {"min", s.min},
+                               {"max", s.max},       {"mean", s.mean},
+                               {"stddev", s.stddev}, {"n", s.n},
                                {"unit", unit},       {"ci95", {s.ci_low, s.ci_high}}};
         list.push_back({{"scene", result.scene},
                         {"method", result.method},
@@ -76,7 +80,8 @@ nlohmann::json to_json(std::span<const ResultSummary> results) {
 std::vector<ResultSummary> from_json(const nlohmann::json& json, const std::string& file) {
     try {
         if (json.at("schema") != 1)
-            throw std::runtime_error(file + ": has another schema than 1; use the grove that wrote it");
+            throw std::runtime_error(file +
+                                     ": has another schema than 1; use the grove that wrote it");
         std::vector<ResultSummary> results;
         for (const auto& entry : json.at("results")) {
             ResultSummary result{entry.at("scene"), entry.at("method"), entry.at("variant"), {}};
@@ -109,7 +114,8 @@ std::string readable(double value, const std::string& unit) {
         return fmt::format("{} {}", scale == 0 ? with_separators(value) : four_digits(value),
                            kUnits[scale]);
     }
-    if (unit == "1") return value == std::floor(value) ? with_separators(value) : four_digits(value);
+    if (unit == "1")
+        return value == std::floor(value) ? with_separators(value) : four_digits(value);
     return four_digits(value) + " " + unit;
 }
 

@@ -13,8 +13,8 @@ struct Bar {
     measure::Statistics statistics;
 };
 
-/// Horizontal bars from 0 to the medians, each with a line from minimum to maximum and, thicker, the
-/// confidence interval. Bars share one scale. At least one bar; values must not be negative.
+/// Horizontal bars from 0 to the medians, each with a line from minimum to maximum and, thicker,
+/// the confidence interval. Bars share one scale. At least one bar; values must not be negative.
 std::string bar_chart(const std::string& title, const std::string& unit, std::span<const Bar> bars);
 
 }  // namespace experiments::report

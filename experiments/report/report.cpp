@@ -83,7 +83,8 @@ std::string cell(const Results& results, const std::string& metric, const Result
         spread = fmt::format("<span class=\"spread\">{} – {}</span>",
                              escape(measure::readable(s.min, summary->unit)),
                              escape(measure::readable(s.max, summary->unit)));
-    return fmt::format("<td{}>{}{}</td>", is_best(results, metric, s.median) ? " class=\"best\"" : "",
+    return fmt::format("<td{}>{}{}</td>",
+                       is_best(results, metric, s.median) ? " class=\"best\"" : "",
                        escape(measure::readable(s.median, summary->unit)), spread);
 }
 
@@ -138,7 +139,8 @@ std::string pictures(const std::filesystem::path& run, const nlohmann::json& man
             png_data_uri(run / file), escape(kind + " of " + scene), escape(kind), escape(method),
             escape(variant));
     }
-    return html.empty() ? html : "<h3>Pictures</h3>\n<div class=\"pictures\">\n" + html + "</div>\n";
+    return html.empty() ? html
+                        : "<h3>Pictures</h3>\n<div class=\"pictures\">\n" + html + "</div>\n";
 }
 
 std::string facts_table(const std::vector<std::pair<std::string, std::string>>& facts) {
@@ -158,28 +160,29 @@ std::string provenance(const nlohmann::json& manifest) {
                &program = manifest.at("program");
     const auto& last = manifest.at("sessions").back();
     return "<h2>Provenance</h2>\n" +
-           facts_table({{"device", text_of(device, "name")},
-                        {"driver", text_of(device, "driver")},
-                        {"subgroup size", text_of(device, "subgroup_size")},
-                        {"host", text_of(host, "cpu") + ", " + text_of(host, "cores") + " cores, " +
-                                     text_of(host, "system")},
-                        {"commit", text_of(program, "git_commit") +
-                                       (program.value("git_dirty", nlohmann::json()) == true
-                                            ? " with changes"
-                                            : "")},
-                        {"compiler", text_of(program, "compiler") + " " + text_of(program, "flags")},
-                        {"command", text_of(last, "command_line")},
-                        {"started", text_of(manifest.at("sessions").front(), "start")},
-                        {"ended", text_of(last, "end")},
-                        {"sessions", std::to_string(manifest.at("sessions").size())},
-                        {"config sha256", text_of(manifest, "config_sha256")}}) +
+           facts_table(
+               {{"device", text_of(device, "name")},
+                {"driver", text_of(device, "driver")},
+                {"subgroup size", text_of(device, "subgroup_size")},
+                {"host", text_of(host, "cpu") + ", " + text_of(host, "cores") + " cores, " +
+                             text_of(host, "system")},
+                {"commit",
+                 text_of(program, "git_commit") +
+                     (program.value("git_dirty", nlohmann::json()) == true ? " with changes" : "")},
+                {"compiler", text_of(program, "compiler") + " " + text_of(program, "flags")},
+                {"command", text_of(last, "command_line")},
+                {"started", text_of(manifest.at("sessions").front(), "start")},
+                {"ended", text_of(last, "end")},
+                {"sessions", std::to_string(manifest.at("sessions").size())},
+                {"config sha256", text_of(manifest, "config_sha256")}}) +
            "<details><summary>Resolved config</summary><pre>" +
            escape(manifest.at("config").dump(2)) + "</pre></details>\n";
 }
 
 std::string failures(const nlohmann::json& manifest) {
     std::string html;
-    for (const auto& line : manifest.at("sessions").back().value("failures", nlohmann::json::array()))
+    for (const auto& line :
+         manifest.at("sessions").back().value("failures", nlohmann::json::array()))
         html += "<p class=\"bad\">Failed: " + escape(line.get<std::string>()) + "</p>\n";
     return html;
 }
@@ -194,7 +197,8 @@ std::string scene_section(const std::filesystem::path& run, const nlohmann::json
         for (const MetricSummary& summary : facts->metrics)
             parts.push_back(summary.metric + " " +
                             measure::readable(summary.statistics.median, summary.unit));
-        html += fmt::format("<p class=\"soft\">{}</p>\n", escape(fmt::format("{}", fmt::join(parts, " · "))));
+        html += fmt::format("<p class=\"soft\">{}</p>\n",
+                            escape(fmt::format("{}", fmt::join(parts, " · "))));
     }
     if (!results.empty()) html += table(results) + charts(results);
     return html + pictures(run, manifest, scene) + "</section>\n";
@@ -210,15 +214,16 @@ void write_report(const std::filesystem::path& run) {
         const auto& config = manifest.at("config");
         const std::string name = config.at("name");
         html = document_head(name + " – Grove");
-        html += fmt::format("<h1>{}</h1>\n<p class=\"soft\">{} experiment on {} · {} repetitions, "
-                            "{} warm-up · {}</p>\n",
-                            escape(name), escape(config.at("kind").get<std::string>()),
-                            escape(text_of(manifest.at("device"), "name")),
-                            config.at("repeat").dump(), config.at("warmup").dump(),
-                            escape(text_of(manifest.at("sessions").front(), "start")));
-        html += "<p class=\"soft\">Medians; below them, and as thin lines in the charts, minimum and "
-                "maximum; thick lines: confidence interval of the median. Green: best of its "
-                "column.</p>\n";
+        html += fmt::format(
+            "<h1>{}</h1>\n<p class=\"soft\">{} experiment on {} · {} repetitions, "
+            "{} warm-up · {}</p>\n",
+            escape(name), escape(config.at("kind").get<std::string>()),
+            escape(text_of(manifest.at("device"), "name")), config.at("repeat").dump(),
+            config.at("warmup").dump(), escape(text_of(manifest.at("sessions").front(), "start")));
+        html +=
+            "<p class=\"soft\">Medians; below them, and as thin lines in the charts, minimum and "
+            "maximum; thick lines: confidence interval of the median. Green: best of its "
+            "column.</p>\n";
         html += failures(manifest);
         for (const std::string& scene : scene_names(results))
             html += scene_section(run, manifest, results, scene);

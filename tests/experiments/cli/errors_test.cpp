@@ -43,8 +43,8 @@ TEST_F(ErrorsTest, ConfigFile) {
                  {"x.toml:3:", "'repeat' is a string", "expected an integer"});
     expect_error(run_text("[experiment]\nkind = \"trace\"\n"), 2,
                  {"x.toml:2:", "not available in this version", "shadows, build"});
-    expect_error(run_text("[experiment]\nkind = \"shadows\"\n[[scene]]\ngenerator = \"citty\"\n"), 2,
-                 {"x.toml:4:", "'citty'", "did you mean 'city'"});
+    expect_error(run_text("[experiment]\nkind = \"shadows\"\n[[scene]]\ngenerator = \"citty\"\n"),
+                 2, {"x.toml:4:", "'citty'", "did you mean 'city'"});
     expect_error(run_text("[experiment]\nkind = \"shadows\"\n[[scene]]\ngenerator = \"city\"\n"
                           "[[method]]\nname = \"embre\"\n"),
                  2, {"x.toml:6:", "'embre'", "did you mean 'embree'"});
@@ -105,7 +105,8 @@ TEST_F(ErrorsTest, DeviceIndex) {
 }
 
 TEST_F(ErrorsTest, ListsAndDoctorWork) {
-    for (const char* what : {"structures", "shadows", "scenes", "experiments", "devices", "metrics"}) {
+    for (const char* what :
+         {"structures", "shadows", "scenes", "experiments", "devices", "metrics"}) {
         EXPECT_EQ(real(std::string("list ") + what).code, 0) << what;
         const Outcome listed = real(std::string("list --json ") + what);
         EXPECT_TRUE(nlohmann::json::accept(listed.out)) << what;

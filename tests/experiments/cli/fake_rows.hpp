@@ -1,4 +1,5 @@
-// A structure and a shadow method without any work behind them, for tests of the program around them.
+// A structure and a shadow method without any work behind them, for tests of the program around
+// them.
 #pragma once
 
 #include "experiments/measure/session.hpp"

@@ -29,7 +29,7 @@ TEST(Statistics, SmallSamplesByHand) {
 
 /// Ranks from the published tables of the sign-test interval of a median.
 TEST(Statistics, ConfidenceRanks) {
-    const std::pair<int, int> kRanks[] = {{5, 1}, {6, 1}, {8, 1}, {9, 2}, {10, 2},
+    const std::pair<int, int> kRanks[] = {{5, 1},  {6, 1},  {8, 1},  {9, 2},   {10, 2},
                                           {15, 4}, {20, 6}, {25, 8}, {50, 18}, {100, 40}};
     for (const auto& [n, rank] : kRanks) {
         std::vector<double> values(n);
@@ -86,7 +86,8 @@ TEST_F(Samples, SurvivesACutAtEveryByte) {
     {
         SamplesFile file(file_);
         for (int i = 0; i < 3; ++i)
-            file.append({"s", "m", "v", 0, i}, {{"build_ms", 1.5 + i, "ms"}, {"query_ms", 2, "ms"}});
+            file.append({"s", "m", "v", 0, i},
+                        {{"build_ms", 1.5 + i, "ms"}, {"query_ms", 2, "ms"}});
     }
     std::ifstream stream(file_);
     const std::string whole{std::istreambuf_iterator<char>(stream), {}};

@@ -77,8 +77,8 @@ TEST_F(ReportTest, ShowsTablesBarsAndPicturesInABrowser) {
     html.replace(html.find("</body>"), 7, probe);
     write_text(folder_ / "probe.html", html);
     for (const char* size : {"1280,900", "500,900"}) {
-        const Outcome page = browser(std::string("--window-size=") + size +
-                                     " --dump-dom 'file://" + (folder_ / "probe.html").string() + "'");
+        const Outcome page = browser(std::string("--window-size=") + size + " --dump-dom 'file://" +
+                                     (folder_ / "probe.html").string() + "'");
         // Header and two rows; shaded, 2 visibility, difference, heat; 4 charts of 2 bars.
         EXPECT_THAT(page.out, HasSubstr("<pre id=\"probe\">3 5 5 8 fits</pre>")) << page.err;
     }
@@ -95,7 +95,9 @@ TEST_F(ReportTest, TheScreenshotShowsBarsInTheirColour) {
     int bar_pixels = 0;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
-            const auto byte = [&](int c) { return int(255 * srgb_encode(image.at(x, y, c)) + 0.5f); };
+            const auto byte = [&](int c) {
+                return int(255 * srgb_encode(image.at(x, y, c)) + 0.5f);
+            };
             bar_pixels += byte(0) == 0x2f && byte(1) == 0x7d && byte(2) == 0x5b;
         }
     EXPECT_GT(bar_pixels, 5000);

@@ -14,15 +14,15 @@ using testing::HasSubstr;
 
 using RunTest = CliTest;
 
-const char* const kTwoMethods =
-    "[[method]]\nname = \"rival\"\nflip = 5\nheat = true\n";
+const char* const kTwoMethods = "[[method]]\nname = \"rival\"\nflip = 5\nheat = true\n";
 
 TEST_F(RunTest, WritesEverythingAndPrintsTheFolderLast) {
     write_config(kTwoMethods);
     const Outcome run = fake("run test.toml --out r");
     ASSERT_EQ(run.code, 0) << run.err;
     EXPECT_THAT(run.out, EndsWith("\n" + (folder_ / "r").string() + "\n"));
-    for (const char* file : {"samples.csv", "summary.json", "manifest.json", "report.html", "log.txt"})
+    for (const char* file :
+         {"samples.csv", "summary.json", "manifest.json", "report.html", "log.txt"})
         EXPECT_TRUE(fs::exists(folder_ / "r" / file)) << file;
 
     const auto rows = experiments::measure::read_samples(folder_ / "r/samples.csv");
@@ -110,10 +110,11 @@ TEST_F(RunTest, AKilledRunGoesOnWithoutLosingOrRepeatingAnything) {
     const auto rows = experiments::measure::read_samples(folder_ / "r/samples.csv");
     const auto results = experiments::measure::summarise(rows);
     EXPECT_EQ(results[0].find("query_ms")->statistics.n, 5);
-    EXPECT_TRUE(std::equal(kept.begin(), kept.end(), rows.begin(), [](const auto& a, const auto& b) {
-        return a.key == b.key && a.sample.metric == b.sample.metric &&
-               a.sample.value == b.sample.value;
-    }));
+    EXPECT_TRUE(
+        std::equal(kept.begin(), kept.end(), rows.begin(), [](const auto& a, const auto& b) {
+            return a.key == b.key && a.sample.metric == b.sample.metric &&
+                   a.sample.value == b.sample.value;
+        }));
     EXPECT_EQ(std::count(complete.begin(), complete.end(), '\n'),
               std::count_if(rows.begin(), rows.end(), [](const auto&) { return true; }) + 1 + 6)
         << "header, rows, and one closing row per repetition and scene";
