@@ -47,6 +47,19 @@ std::size_t find_reference(const Config& config, const std::string& name, const 
     fail(where, unknown("reference method", name, known));
 }
 
+/// Labels become cells of a table of one line per row, and parts of file names.
+void check_labels(const Config& config, const Node& where) {
+    const auto check = [&](const std::string& label) {
+        for (unsigned char c : label)
+            if (c < 0x20 || c == 0x7f)
+                fail(where,
+                     "a 'name' or 'variant' holds a line break or another control character");
+        if (label.empty()) fail(where, "a 'name' or 'variant' is empty");
+    };
+    for (const Scene& scene : config.scenes) check(scene.name);
+    for (const Method& method : config.methods) check(method.variant);
+}
+
 void check_unique(const Config& config, const Node& where) {
     for (std::size_t i = 0; i < config.scenes.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
@@ -129,6 +142,7 @@ Config resolve(const Node& root, const std::filesystem::path& file, const Catalo
         read_methods(node, shadows ? catalogue.methods : catalogue.structures,
                      shadows ? "shadow method" : "structure", config.methods);
     document.finish();
+    check_labels(config, root);
     check_unique(config, root);
     if (reference) config.reference = find_reference(config, *reference, *table.find("reference"));
     return config;

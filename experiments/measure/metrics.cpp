@@ -15,7 +15,7 @@ constexpr Metric kMetrics[] = {
     {"launches", "1", lower, "kernel launches of the task pool"},
     {"tasks", "1", neither, "tasks the pool ran"},
     {"pool_peak", "1", lower, "tasks alive at the same time, at most"},
-    {"memory_bytes", "bytes", lower, "device or host memory at the peak of the build"},
+    {"memory_bytes", "bytes", lower, "memory at the peak of the build"},
     {"visited_nodes_mean", "1", lower, "nodes visited per point, mean"},
     {"visited_nodes_max", "1", lower, "nodes visited per point, maximum"},
     {"tested_triangles_mean", "1", lower, "triangles tested per point, mean"},
@@ -38,7 +38,7 @@ constexpr Metric kMetrics[] = {
     {"depth_mean", "1", lower, "mean depth of a leaf"},
     {"leaf_size_mean", "1", neither, "triangles per leaf, mean"},
     {"rays", "1", neither, "rays traced"},
-    {"mrays_per_s", "1e6/s", higher, "rays per second, in millions"},
+    {"mrays_per_s", "Mrays/s", higher, "rays per second, in millions"},
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 namespace experiments::measure {
 namespace {
@@ -22,6 +23,11 @@ std::string four_digits(double value) {
                                       size >= 100  ? 1
                                       : size >= 10 ? 2
                                                    : 3);
+}
+
+/// A number of summary.json; JSON has no NaN and writes null.
+double number(const nlohmann::json& json) {
+    return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
 }  // namespace
@@ -88,13 +94,13 @@ std::vector<ResultSummary> from_json(const nlohmann::json& json, const std::stri
             for (const auto& [name, m] : entry.at("metrics").items()) {
                 Statistics s;
                 s.n = m.at("n");
-                s.median = m.at("median");
-                s.min = m.at("min");
-                s.max = m.at("max");
-                s.mean = m.at("mean");
-                s.stddev = m.at("stddev");
-                s.ci_low = m.at("ci95").at(0);
-                s.ci_high = m.at("ci95").at(1);
+                s.median = number(m.at("median"));
+                s.min = number(m.at("min"));
+                s.max = number(m.at("max"));
+                s.mean = number(m.at("mean"));
+                s.stddev = number(m.at("stddev"));
+                s.ci_low = number(m.at("ci95").at(0));
+                s.ci_high = number(m.at("ci95").at(1));
                 result.metrics.push_back({name, m.at("unit"), s});
             }
             results.push_back(std::move(result));

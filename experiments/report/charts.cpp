@@ -14,6 +14,15 @@ namespace {
 // shows it at about this many pixels.
 constexpr double kWidth = 400, kMargin = 14, kTitle = 32, kRow = 44, kBarHeight = 14;
 
+/// `text` cut to what fits beside a value, at the end of a UTF-8 character.
+std::string shortened(const std::string& text) {
+    constexpr std::size_t kLongest = 44;
+    if (text.size() <= kLongest) return text;
+    std::size_t end = kLongest;
+    while (end > 0 && (text[end] & 0xc0) == 0x80) --end;
+    return text.substr(0, end) + "…";
+}
+
 }  // namespace
 
 std::string bar_chart(const std::string& title, const std::string& unit,
@@ -34,7 +43,7 @@ std::string bar_chart(const std::string& title, const std::string& unit,
         const double bar_top = top + 19, middle = bar_top + kBarHeight / 2;
         svg += fmt::format(
             "<text x=\"{}\" y=\"{}\">{}</text><text class=\"value\" x=\"{}\" y=\"{}\">{}</text>\n",
-            kMargin, top + 13, escape(bars[i].label), kWidth - kMargin, top + 13,
+            kMargin, top + 13, escape(shortened(bars[i].label)), kWidth - kMargin, top + 13,
             escape(measure::readable(s.median, unit)));
         svg += fmt::format(
             "<rect class=\"track\" x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" rx=\"2\"/>"

@@ -27,7 +27,7 @@ th, td { padding: .4rem .75rem; text-align: right; border-bottom: 1px solid var(
   white-space: nowrap; font-variant-numeric: tabular-nums; }
 tr:last-child td { border-bottom: 0; } th { font-weight: 600; color: var(--soft); }
 th:first-child, td:first-child { text-align: left; }
-td .spread { display: block; font-size: .75rem; color: var(--soft); }
+td .spread { display: block; font-size: .75rem; font-weight: 400; color: var(--soft); }
 td.best { color: var(--best); font-weight: 600; }
 table.facts td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
 table.facts td:first-child { color: var(--soft); white-space: nowrap; vertical-align: top; }

@@ -123,24 +123,24 @@ std::string charts(const Results& results) {
     return html.empty() ? html : "<div class=\"charts\">\n" + html + "</div>\n";
 }
 
-/// The reference method's shaded picture, and every method's other pictures.
+/// What the reference method sees; of the others, where they differ from it, and what points cost.
 std::string pictures(const std::filesystem::path& run, const nlohmann::json& manifest,
                      const std::string& scene) {
-    std::string html;
+    std::string first, rest;
     const std::string reference = manifest.at("config").value("reference", "");
     for (const auto& image : manifest.value("images", nlohmann::json::array())) {
         const std::string kind = image.at("kind"), method = image.at("method"),
                           variant = image.at("variant"), file = image.at("file");
-        if (image.at("scene") != scene) continue;
-        if (kind == "shaded" && method + " " + variant != reference) continue;
-        if (!std::filesystem::exists(run / file)) continue;
-        html += fmt::format(
+        const bool common = kind == "shaded" || kind == "visibility";
+        if (image.at("scene") != scene || !std::filesystem::exists(run / file)) continue;
+        if (common && method + " " + variant != reference) continue;
+        (common ? first : rest) += fmt::format(
             "<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}: {} {}</figcaption></figure>\n",
             png_data_uri(run / file), escape(kind + " of " + scene), escape(kind), escape(method),
             escape(variant));
     }
-    return html.empty() ? html
-                        : "<h3>Pictures</h3>\n<div class=\"pictures\">\n" + html + "</div>\n";
+    if (first.empty() && rest.empty()) return {};
+    return "<h3>Pictures</h3>\n<div class=\"pictures\">\n" + first + rest + "</div>\n";
 }
 
 std::string facts_table(const std::vector<std::pair<std::string, std::string>>& facts) {

@@ -156,6 +156,11 @@ TEST(Config, SameMethodTwiceNeedsVariants) {
     EXPECT_EQ(refusal(twice + "variant = \"again\"\n"), "accepted");
 }
 
+TEST(Config, LabelsAreOneLine) {
+    EXPECT_THAT(refusal(kText + "variant = \"a\\nb\"\n"), HasSubstr("control character"));
+    EXPECT_THAT(refusal(kText + "variant = \"\"\n"), HasSubstr("is empty"));
+}
+
 TEST(Config, SeedReachesTheGenerator) {
     EXPECT_EQ(parse(kText, {"experiment.seed=9"}).scenes[0].settings.integer("seed"), 9);
     EXPECT_EQ(

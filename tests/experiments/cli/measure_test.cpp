@@ -1,7 +1,9 @@
 // Statistics, samples files and summaries.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -112,14 +114,21 @@ TEST_F(Samples, RefusesOtherFiles) {
     EXPECT_THROW(SamplesFile{folder_ / "none" / "samples.csv"}, OutputError);
 }
 
-TEST_F(Samples, AFullDeviceIsReported) {
-    fs::create_symlink("/dev/full", file_);
+/// A limit on the size of files acts as a full disk does.
+TEST_F(Samples, AFullDiskIsReported) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit before{};
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    SamplesFile file(file_);
+    const rlimit small{500, before.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    int written = 0;
     EXPECT_THROW(
-        {
-            SamplesFile file(file_);
-            file.append({"s", "m", "v", 0, 0}, {{"build_ms", 1, "ms"}});
-        },
+        for (;; ++written) file.append({"s", "m", "v", 0, written}, {{"build_ms", 1, "ms"}}),
         OutputError);
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_GT(written, 5);
+    EXPECT_EQ(read_samples(file_).size(), std::size_t(written));
 }
 
 TEST(Summary, JsonRoundTrip) {
@@ -135,6 +144,13 @@ TEST(Summary, JsonRoundTrip) {
     EXPECT_EQ(again[0].find("build_ms")->statistics.median, 4);
     EXPECT_EQ(again[1].find("build_ms")->statistics.ci_high, 12);
     EXPECT_THROW(from_json({{"schema", 2}}, "x"), std::runtime_error);
+}
+
+TEST(Summary, WhatIsNoNumberStaysNoNumber) {
+    const std::vector<Row> rows{{{"s", "m", "v", 0, 0}, {"epo", NAN}}};
+    const auto text = to_json(summarise(rows)).dump();
+    const auto again = from_json(nlohmann::json::parse(text), "x");
+    EXPECT_TRUE(std::isnan(again[0].find("epo")->statistics.median));
 }
 
 TEST(Summary, ReadableNumbers) {
