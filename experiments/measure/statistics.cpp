@@ -27,7 +27,9 @@ int order_rank(int n) {
 
 Statistics statistics(std::span<const double> values) {
     std::vector<double> sorted(values.begin(), values.end());
-    std::sort(sorted.begin(), sorted.end());
+    // What is no number goes last, so that the order is one.
+    std::sort(sorted.begin(), sorted.end(),
+              [](double a, double b) { return a < b || (std::isnan(b) && !std::isnan(a)); });
     Statistics result;
     result.n = int(sorted.size());
     const int half = result.n / 2;
