@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 
+#include "experiments/config/table.hpp"
 #include "experiments/report/report.hpp"
 
 namespace experiments::commands {
@@ -19,6 +20,15 @@ int fail(std::string message, int code) {
 
 std::string joined(int argc, const char* const* argv) {
     return fmt::format("grove {}", fmt::join(argv + std::min(argc, 1), argv + argc, " "));
+}
+
+/// What is wrong with a command line whose first word is `command`.
+std::string usage_error(const CLI::ParseError& error, const std::string& command) {
+    const std::vector<std::string> known = {"run", "test", "list", "doctor", "compare", "report"};
+    if (command.empty() || command.front() == '-' ||
+        std::count(known.begin(), known.end(), command))
+        return fmt::format("{}; see grove --help", error.what());
+    return config::unknown("command", command, known);
 }
 
 int parse_and_run(int argc, const char* const* argv, const measure::Registries& registries) {
@@ -66,7 +76,7 @@ int parse_and_run(int argc, const char* const* argv, const measure::Registries& 
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);
-        return fail(fmt::format("{}; see grove --help", error.what()), 2);
+        return fail(usage_error(error, argc > 1 ? argv[1] : ""), 2);
     }
     if (*run_command) return run(request, registries);
     if (*list_command) return list(what, as_json, registries);

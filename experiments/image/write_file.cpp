@@ -1,3 +1,4 @@
+// Whole files onto the disk, every step checked.
 #include <fmt/format.h>
 
 #include <cerrno>

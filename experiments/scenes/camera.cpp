@@ -1,3 +1,4 @@
+// Cameras: projection, rays, checks, and the default view.
 #include "experiments/scenes/camera.hpp"
 
 #include <fmt/format.h>

@@ -145,10 +145,11 @@ GeneratedScene generate(const Settings& settings) {
     const double edge = (ring - 0.5) * pitch + settings.real("street");
     add_quad(mesh, {{{-edge, 0, -edge}, {-edge, 0, edge}, {edge, 0, edge}, {edge, 0, -edge}}});
 
-    // Near the middle the view is the same however large the city; the sun-like lamp is above it.
+    // Near the middle the view is the same however large the city; the lamp hangs high above it.
     const auto near = static_cast<float>(std::min(edge, 4 * pitch));
     scene.camera = {{0.55f * near, 0.6f * near, 1.1f * near}, {0, 0.05f * near, 0}, {0, 1, 0}, 50};
-    scene.light = {structures::geometry::Light::Type::point, {-0.7f * near, near, 0.2f * near}};
+    scene.light = {structures::geometry::Light::Type::point,
+                   {-0.5f * near, 1.4f * near, 0.7f * near}};
     return scene;
 }
 

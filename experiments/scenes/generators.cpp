@@ -1,3 +1,4 @@
+// The list of generators.
 #include "experiments/scenes/generators.hpp"
 
 #include <array>

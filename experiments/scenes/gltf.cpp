@@ -182,10 +182,7 @@ void read_gltf(std::string_view bytes, const std::filesystem::path& folder, Load
     try {
         Reader(bytes, folder, scene).read();
     } catch (const json::exception& error) {
-        std::string reason = error.what();
-        std::replace_if(
-            reason.begin(), reason.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
-        throw FormatError(fmt::format("malformed glTF: {}", reason.substr(0, 200)));
+        throw FormatError(fmt::format("malformed glTF: {}", error.what()));
     }
 }
 

@@ -1,3 +1,4 @@
+// glTF containers, buffers and accessors.
 #include "experiments/scenes/gltf_data.hpp"
 
 #include <fmt/format.h>

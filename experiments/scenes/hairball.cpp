@@ -64,7 +64,7 @@ GeneratedScene generate(const Settings& settings) {
     while (scene.mesh.triangle_count() < triangles)
         add_tube(scene.mesh, strand(random, segments, radius, curl), sides);
 
-    scene.camera = {{1.6f, 1.1f, 4.2f}, {0, -0.1f, 0}, {0, 1, 0}, 50};
+    scene.camera = {{1.4f, 1.0f, 3.6f}, {0, -0.1f, 0}, {0, 1, 0}, 50};
     scene.light = {structures::geometry::Light::Type::point, {-3, 4, 3}};
     return scene;
 }

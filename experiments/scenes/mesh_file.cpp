@@ -1,3 +1,4 @@
+// load_mesh: picks the reader, then checks and counts what it read.
 #include "experiments/scenes/mesh_file.hpp"
 
 #include <fmt/format.h>

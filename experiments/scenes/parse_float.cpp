@@ -1,3 +1,4 @@
+// Decimal numbers, rounded once.
 #include <charconv>
 #include <cstdlib>
 #include <string>

@@ -1,6 +1,5 @@
 // PLY reader: ASCII and binary of both byte orders, any scalar types, any extra properties and
-// elements. The header's lines end as its first line does ("\n", "\r\n" or "\r"), so the body
-// starts exactly behind end_header even if its first byte happens to be a line end.
+// elements.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,103 +8,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <limits>
-#include <optional>
 
+#include "experiments/scenes/ply_header.hpp"
 #include "experiments/scenes/readers.hpp"
 
 namespace experiments::scenes {
 namespace {
 
-enum class Type { i8, u8, i16, u16, i32, u32, f32, f64 };
-constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
-constexpr std::array<std::array<std::string_view, 2>, 8> kTypeNames = {{{"char", "int8"},
-                                                                        {"uchar", "uint8"},
-                                                                        {"short", "int16"},
-                                                                        {"ushort", "uint16"},
-                                                                        {"int", "int32"},
-                                                                        {"uint", "uint32"},
-                                                                        {"float", "float32"},
-                                                                        {"double", "float64"}}};
-
-struct Property {
-    std::string name;
-    Type type = Type::f32;
-    std::optional<Type> count_type{};  ///< set for a list
-};
-
-struct Element {
-    std::string name;
-    std::size_t count = 0;
-    std::vector<Property> properties{};
-};
-
-struct Header {
-    std::string format;
-    std::vector<Element> elements;
-    std::size_t size = 0;  ///< bytes up to the body
-};
-
-std::vector<std::string> words_of(std::string_view line) {
-    std::vector<std::string> words;
-    for (std::size_t at = 0; (at = line.find_first_not_of(" \t", at)) != line.npos;) {
-        const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
-        words.emplace_back(line.substr(at, end - at));
-        at = end;
-    }
-    return words;
-}
-
-Type type_named(const std::string& word, int line) {
-    for (std::size_t i = 0; i < kTypeNames.size(); ++i)
-        if (word == kTypeNames[i][0] || word == kTypeNames[i][1]) return static_cast<Type>(i);
-    throw FormatError(fmt::format("PLY header line {}: unknown type '{}'", line, word));
-}
-
-Property parse_property(const std::vector<std::string>& words, int line) {
-    if (words.size() == 3) return {words[2], type_named(words[1], line), {}};
-    if (words.size() == 5 && words[1] == "list")
-        return {words[4], type_named(words[3], line), type_named(words[2], line)};
-    throw FormatError(fmt::format("PLY header line {}: malformed property", line));
-}
-
-Header parse_header(std::string_view bytes) {
-    const std::size_t first_end = bytes.substr(0, 5).find_first_of("\r\n");
-    if (bytes.substr(0, 3) != "ply" || first_end != 3)
-        throw FormatError("is not a PLY file: its first line is not 'ply'");
-    const std::string_view line_end = bytes.substr(3, 2) == "\r\n" ? "\r\n" : bytes.substr(3, 1);
-
-    Header header;
-    std::size_t at = 0;
-    for (int line = 1;; ++line) {
-        const std::size_t end = bytes.find(line_end, at);
-        if (end == bytes.npos)
-            throw FormatError(fmt::format("PLY header ends in line {} without end_header", line));
-        const std::vector<std::string> words = words_of(bytes.substr(at, end - at));
-        at = end + line_end.size();
-        const std::string keyword = words.empty() ? "" : words[0];
-        if (keyword == "end_header") break;
-        if (keyword == "format" && words.size() == 3) {
-            header.format = words[1];
-        } else if (keyword == "element" && words.size() == 3) {
-            Element element{words[1]};
-            const std::string& count = words[2];
-            const auto [stop, code] =
-                std::from_chars(count.data(), count.data() + count.size(), element.count);
-            if (code != std::errc() || stop != count.data() + count.size())
-                throw FormatError(
-                    fmt::format("PLY header line {}: '{}' is no element count", line, count));
-            header.elements.push_back(std::move(element));
-        } else if (keyword == "property" && !header.elements.empty()) {
-            header.elements.back().properties.push_back(parse_property(words, line));
-        } else if (line > 1 && !keyword.empty() && keyword != "comment" && keyword != "obj_info") {
-            throw FormatError(
-                fmt::format("PLY header line {}: cannot read '{}'", line, keyword.substr(0, 40)));
-        }
-    }
-    header.size = at;
-    return header;
-}
+using namespace ply;
 
 /// Reads the values of a binary body one after the other.
 template <bool kSwapped>
@@ -113,6 +23,7 @@ class BinaryBody {
   public:
     explicit BinaryBody(std::string_view bytes) : bytes_(bytes) {}
     static constexpr std::size_t min_size(Type type) { return kSizes[static_cast<int>(type)]; }
+    static constexpr std::size_t kSpare = 0;
     std::size_t left() const { return bytes_.size() - at_; }
     std::size_t at() const { return at_; }
 
@@ -160,8 +71,10 @@ class BinaryBody {
 class AsciiBody {
   public:
     explicit AsciiBody(std::string_view bytes) : bytes_(bytes) {}
-    static constexpr std::size_t min_size(Type) { return 2; }     // a digit and a space
-    std::size_t left() const { return bytes_.size() - at_ + 1; }  // the last space may be missing
+    // A digit and a blank, but for the last number.
+    static constexpr std::size_t min_size(Type) { return 2; }
+    static constexpr std::size_t kSpare = 1;
+    std::size_t left() const { return bytes_.size() - at_; }
     std::size_t at() const { return at_; }
 
     bool read(Type type, double& value) {
@@ -208,17 +121,20 @@ class Reader {
     }
 
   private:
+    /// How many things of at least `size` bytes may still come.
+    std::size_t room(std::size_t size) const { return (body_.left() + Body::kSpare) / size; }
+
     /// Holds an element's count against the bytes that are there, before anything is allocated.
     void check_count(const Element& element) const {
         std::size_t size = 0;
         for (const Property& p : element.properties)
             size += Body::min_size(p.count_type.value_or(p.type));
-        if (size == 0 || element.count <= body_.left() / size) return;
+        if (size == 0 || element.count <= room(size)) return;
         throw FormatError(
             fmt::format("announces {} {} elements of at least {} bytes each, but only {} bytes are "
                         "left, enough "
                         "for {}: truncated, or a wrong count",
-                        element.count, element.name, size, body_.left(), body_.left() / size));
+                        element.count, element.name, size, body_.left(), room(size)));
     }
 
     double next(Type type, const Element& element, std::size_t index) {
@@ -237,7 +153,7 @@ class Reader {
         if (property.count_type) {
             count = next(*property.count_type, element, index);
             if (!(count >= 0) || count != std::floor(count) ||
-                count > static_cast<double>(body_.left() / Body::min_size(property.type)))
+                count > static_cast<double>(room(Body::min_size(property.type))))
                 throw FormatError(
                     fmt::format("{} {} has a list of {} values, with {} bytes left: "
                                 "truncated or corrupt",

@@ -1,3 +1,4 @@
+// Random numbers, circles, boxes, spheres and tubes.
 #include "experiments/scenes/shapes.hpp"
 
 #include <cmath>

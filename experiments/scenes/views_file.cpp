@@ -1,3 +1,4 @@
+// Named views from JSON.
 #include "experiments/scenes/views_file.hpp"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 //
 //     embree         rtcOccluded1, one ray per point
 //     embree_packet  rtcOccluded8 or 16, one packet per 4 x 2 or 4 x 4 pixels
-//     embree_stream  rtcOccludedNM, one coherent stream per 16 x 4 pixels
+//     embree_stream  rtcOccludedNp, one coherent stream per 16 x 4 pixels
 #pragma once
 
 #include <memory>

@@ -22,12 +22,11 @@ void occluded(const int* valid, RTCScene scene, RTCIntersectContext* context, RT
     rtcOccluded16(valid, scene, context, rays);
 }
 template <int width>
-void occluded(const int* valid, RTCScene scene, RTCIntersectContext* context,
-              RTCRayNt<width>* rays) {
-    // A stream has no mask: a ray is inactive whose far end lies before its near end.
-    for (int i = 0; i < width; ++i)
-        if (!valid[i]) rays->tfar[i] = -1;
-    rtcOccludedNM(scene, context, reinterpret_cast<RTCRayN*>(rays), width, 1, sizeof(*rays));
+void occluded(const int*, RTCScene scene, RTCIntersectContext* context, RTCRayNt<width>* rays) {
+    const RTCRayNp pointers = {rays->org_x, rays->org_y, rays->org_z, rays->tnear,
+                               rays->dir_x, rays->dir_y, rays->dir_z, rays->time,
+                               rays->tfar,  rays->mask,  rays->id,    rays->flags};
+    rtcOccludedNp(scene, context, &pointers, width);
 }
 
 template <typename Packet, int width>
@@ -58,17 +57,21 @@ void trace_packets(RTCScene scene, const ShadowRays& rays, const PointArrays& po
         for (int i = 0; i < width; ++i) {
             valid[i] = points.primitive[base + i] == kNoPrimitive ? 0 : -1;
             any_valid |= valid[i];
+            // Streams take no mask: an inactive ray ends before it begins.
+            packet.tfar[i] = valid[i] ? rays.far : -1;
         }
         if (!any_valid) continue;
         for (int axis = 0; axis < 3; ++axis)
             for (int i = 0; i < width; ++i) own[axis][i] = positions[axis][base + i] - shift[axis];
-        std::fill_n(packet.tfar, width, rays.far);
         occluded(valid, scene, &context, &packet);
         // Embree marks an occluded ray by tfar = -inf, and where the CPU has no such packets
         // natively it does so to inactive rays too.
-        for (int i = 0; i < width; ++i) {
-            const std::uint32_t shadowed = valid[i] && packet.tfar[i] < 0;
-            words[(base + i) / 32] ^= shadowed << ((base + i) % 32);
+        for (int start = 0; start < width; start += 32) {
+            std::uint32_t shadowed = 0;
+            for (int i = start; i < std::min(start + 32, width); ++i)
+                shadowed |= static_cast<std::uint32_t>(valid[i] & (packet.tfar[i] < 0))
+                            << (i - start);
+            words[(base + start) / 32] &= ~(shadowed << (base + start) % 32);
         }
     }
 }
@@ -80,7 +83,9 @@ ShadowRays::ShadowRays(const structures::geometry::Light& light, float scene_dia
       vector(light.vector),
       near(from_light ? 0 : bias),
       far(from_light ? 1 - bias : kInfinity) {
-    if (!from_light) vector = -glm::normalize(vector) * std::max(scene_diagonal, 1e-30f);
+    // In double precision, where no float's square under- or overflows.
+    if (!from_light)
+        vector = -glm::normalize(glm::dvec3(vector)) * std::max(double{scene_diagonal}, 1e-30);
 }
 
 void trace_single(RTCScene scene, const ShadowRays& rays, const PointArrays& points,

@@ -84,6 +84,7 @@ DeviceInfo describe(VkPhysicalDevice device) {
     if (properties.properties.limits.timestampComputeAndGraphics)
         info.timestamp_period_ns = properties.properties.limits.timestampPeriod;
     info.loop_limit = loop_limit(v12);
+    info.lockstep = v12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
     info.persistent_workgroups = persistent_workgroups(info.type);
     info.has_ray_query = has_extension(device, VK_KHR_RAY_QUERY_EXTENSION_NAME);
 

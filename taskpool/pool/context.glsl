@@ -4,7 +4,8 @@ PoolState pool_counters;      // this launch's, added to the shared ones at the 
 uint pool_held = 0;           // entries on the private stack
 bool pool_is_alone = false;
 uint pool_iterations = 0;     // of the budget
-uint pool_hint = 0;           // where this subgroup looks first
+uint pool_hint = 0;           // where this subgroup looks first for work
+uint pool_free_hint = 0;      // and for a free slot
 int pool_live_delta = 0;      // private tasks spawned less tasks ended, not yet told to the others
 uvec2 pool_began;
 
@@ -15,10 +16,14 @@ void pool_spend(uint iterations) { pool_iterations += iterations; }
 /// Adds to the measure of progress that the host sees.
 void pool_progress(uint amount) { pool_counters.progress += amount; }
 
-/// Orders memory accesses among the lanes of this subgroup.
+/// Orders the lanes' accesses before to those after, also as seen from other subgroups.
 void pool_order_lanes() {
-    memoryBarrier(gl_ScopeDevice, gl_StorageSemanticsBuffer,
-                  gl_SemanticsAcquireRelease | gl_SemanticsMakeAvailable | gl_SemanticsMakeVisible);
+    const int semantics =
+        gl_SemanticsAcquireRelease | gl_SemanticsMakeAvailable | gl_SemanticsMakeVisible;
+    if (kLockstep)
+        memoryBarrier(gl_ScopeDevice, gl_StorageSemanticsBuffer, semantics);
+    else
+        controlBarrier(gl_ScopeSubgroup, gl_ScopeDevice, gl_StorageSemanticsBuffer, semantics);
 }
 
 // Atomics on one word, done by one lane, with acquire and release order at device scope: what this

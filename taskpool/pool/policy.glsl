@@ -77,38 +77,37 @@ uint map_find(uint map, inout uint hint) {
 }
 
 /// Looks at the next run of headers; the slot of this subgroup's turn whose header passes.
-uint scan_headers(bool want_empty) {
-    const uint end = want_empty ? pool.capacity : slots_in_use();
-    pool_hint = pool_hint < end ? pool_hint : 0;
-    const uint mine = pool_hint + gl_SubgroupInvocationID;
+uint scan_headers(bool want_empty, uint end, inout uint hint) {
+    hint = hint < end ? hint : 0;
+    const uint mine = hint + gl_SubgroupInvocationID;
     const int header = mine < end ? header_peek(mine) : 0;
     ++pool_counters.polls;
     bool any;
     const uint slot = from_lane(want_empty ? header == kEmpty : header > 0, mine, any);
     if (any) return slot;
-    pool_hint += gl_SubgroupSize;
+    hint += gl_SubgroupSize;
     return kNoSlot;
 }
 
 bool find_active(out uint slot, out int chunks) {
-    slot = kPolicy == kPolicyScan ? scan_headers(false) : map_find(kActiveMap, pool_hint);
+    slot = kPolicy == kPolicyScan ? scan_headers(false, slots_in_use(), pool_hint)
+                                  : map_find(kActiveMap, pool_hint);
     if (slot == kNoSlot) return false;
     chunks = subgroupBroadcastFirst(header_peek(slot));
     return chunks > 0;
 }
 
-uint pool_free_hint = 0;
-
 uint allocate_slot() {
     // Within one call, look everywhere once: the caller decides what to do when all is full.
-    const uint looks = kPolicy == kPolicyScan ? pool.capacity / gl_SubgroupSize + 2
-                                              : map_top_words() / gl_SubgroupSize + 34;
+    const uint looks = min(kMaxLooks, kPolicy == kPolicyScan
+                                          ? pool.capacity / gl_SubgroupSize + 2
+                                          : map_top_words() / gl_SubgroupSize + 34);
     for (uint look = 0; look < looks; ++look) {
         ++pool_iterations;
         uint slot;
         bool taken = false;
         if (kPolicy == kPolicyScan) {
-            slot = scan_headers(true);
+            slot = scan_headers(true, pool.capacity, pool_free_hint);
             if (slot != kNoSlot) taken = pool_swap(pool.headers, slot, kEmpty, 0) == kEmpty;
         } else {
             slot = map_find(kEmptyMap, pool_free_hint);

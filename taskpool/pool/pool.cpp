@@ -25,7 +25,10 @@ std::uint32_t subgroup_count(const gpu::Device& device, const PoolConfig& config
 
 std::uint32_t iteration_budget(const gpu::Device& device, const PoolConfig& config) {
     const std::uint32_t limit = device.info().loop_limit;
-    return limit ? std::min(config.iteration_budget, limit) : config.iteration_budget;
+    if (limit == 0) return config.iteration_budget;
+    // What one turn of the engine's loop may take beyond its chunk, and what leaving takes.
+    const std::uint32_t margin = 2 * kMaxLooks + 4 * kPhaseCounters;
+    return std::min(config.iteration_budget, limit - margin);
 }
 
 std::size_t stack_bytes(std::uint32_t subgroups, const ClientSpec& client) {
@@ -179,6 +182,8 @@ bool Pool::advance() {
 void Pool::grow() {
     const std::uint32_t old = status_.capacity;
     auto headers = gpu::read<std::int32_t>(headers_, old);
+    // Slots may have become free since, or lie where a search of bounded length did not get to.
+    if (std::size_t(std::count(headers.begin(), headers.end(), kEmpty)) > old / 2) return;
     const auto infos = gpu::read<TaskInfo>(infos_, old);
     const auto tasks = gpu::read<std::byte>(tasks_, std::size_t{old} * client_.task_bytes);
     const auto unfinished = gpu::read<std::int32_t>(unfinished_, old);

@@ -21,6 +21,7 @@ POOL_CONSTANT uint kNoSlot = 0xffffffffu;
 POOL_CONSTANT uint kPolicyScan = 0;    // the paper's: look at runs of headers
 POOL_CONSTANT uint kPolicyBitmap = 1;  // two-level bitmaps of active and empty slots, private tasks
 
+POOL_CONSTANT uint kMaxLooks = 8192;  // for a free slot, in one go
 POOL_CONSTANT uint kPhaseCounters = 16;  // phases from 15 on share the last counter
 
 // Words of the bitmap buffer, per map: one bit per slot, and one bit per word above it.

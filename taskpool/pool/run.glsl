@@ -36,6 +36,12 @@ void find_work(inout TaskInfo info, inout Task task) {
     // A step published without chunks has one empty chunk to claim.
     if (info.chunk_count == 0) pool_chunk = pool_chunk_end;
     pool_mode = kClaimed;
+    // Whoever claims a whole step owns the task.
+    if (pool_claimed == max(info.chunk_count, 1u)) {
+        info.home = pool_slot;
+        info.next_chunk = pool_chunk;
+        pool_mode = kOwned;
+    }
 }
 
 /// Work was done: what is stalled may be tried again.
@@ -162,6 +168,8 @@ void main() {
     pool_counters = PoolState(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, uint[kPhaseCounters](
         0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0));
     pool_hint = gl_WorkGroupID.x * gl_SubgroupSize;
+    // Beyond the slots in use there are sure to be free ones.
+    if (kPolicy == kPolicyScan) pool_free_hint = slots_in_use();
     pool_held = PoolUints(pool.stacks).at[gl_WorkGroupID.x];
     TaskInfo info;
     Task task;

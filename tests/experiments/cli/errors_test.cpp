@@ -26,7 +26,7 @@ class ErrorsTest : public CliTest {
 
 TEST_F(ErrorsTest, CommandLine) {
     expect_error(real(""), 2, {"subcommand"});
-    expect_error(real("rum"), 2, {"rum"});
+    expect_error(real("rum"), 2, {"unknown command 'rum'", "did you mean 'run'"});
     expect_error(real("run"), 2, {"CONFIG"});
     expect_error(real("run x.toml --devise 1"), 2, {"--devise"});
     expect_error(real("list shadow"), 2, {"shadow", "did you mean 'shadows'"});
@@ -78,7 +78,7 @@ TEST_F(ErrorsTest, ABrokenSceneStopsNoOther) {
     write_text(folder_ / "bad.ply", "no mesh");
     write_text(folder_ / "x.toml",
                "[experiment]\nkind = \"shadows\"\nrepeat = 1\n[[scene]]\nfile = \"bad.ply\"\n"
-               "[[scene]]\ngenerator = \"city\"\ntriangles = 500\nresolution = [32, 32]\n"
+               "[[scene]]\ngenerator = \"city\"\ntriangles = 1000\nresolution = [32, 32]\n"
                "[[method]]\nname = \"embree\"\n");
     expect_error(real("run x.toml --out r"), 1, {"bad.ply"});
     EXPECT_EQ(json("r/summary.json").at("results").size(), 2u);

@@ -58,7 +58,7 @@ fs::path CliTest::write_config(const std::string& extra, const std::string& expe
                    experiment +
                    "[[scene]]\n"
                    "generator = \"spheres\"\n"
-                   "triangles = 500\n"
+                   "n = 4\ntessellation = 4\n"
                    "resolution = [64, 48]\n"
                    "[[method]]\n"
                    "name = \"stripes\"\n" +

@@ -77,7 +77,7 @@ TEST_F(RunTest, SweepsRunEveryCombination) {
     write_config();
     const Outcome run = fake(
         "run test.toml --out r --set 'method.0.width=[8,16]' --set 'method.0.scale=[1.0,2.0]' "
-        "--set 'scene.0.tessellation=[4,6]'");
+        "--set 'scene.0.n=[3,4]'");
     ASSERT_EQ(run.code, 0) << run.err;
     std::set<std::string> seen;
     for (const auto& result : json("r/summary.json").at("results"))
@@ -85,8 +85,7 @@ TEST_F(RunTest, SweepsRunEveryCombination) {
             seen.insert(result.at("scene").get<std::string>() + "|" +
                         result.at("variant").get<std::string>());
     EXPECT_EQ(seen.size(), 8u);
-    EXPECT_TRUE(seen.contains("spheres,tessellation=6|width=16,scale=2"))
-        << testing::PrintToString(seen);
+    EXPECT_TRUE(seen.contains("spheres,n=4|width=16,scale=2")) << testing::PrintToString(seen);
 }
 
 TEST_F(RunTest, AKilledRunGoesOnWithoutLosingOrRepeatingAnything) {
@@ -169,7 +168,7 @@ TEST_F(RunTest, BuildsMeasureStructures) {
     write_config();
     write_text(folder_ / "build.toml",
                "[experiment]\nname = \"b\"\nkind = \"build\"\nrepeat = 2\n"
-               "[[scene]]\ngenerator = \"spheres\"\ntriangles = 500\n"
+               "[[scene]]\ngenerator = \"spheres\"\nn = 4\n"
                "[[method]]\nname = \"fake_tree\"\nleaf_size = [4, 8]\n");
     const Outcome run = fake("run build.toml --out r");
     ASSERT_EQ(run.code, 0) << run.err;
