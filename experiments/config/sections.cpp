@@ -143,6 +143,22 @@ void take_view(Scene& scene, const std::string& name, const Node& node) {
     scene.light = view.light;
 }
 
+/// What the config calls the method, or "key=value" of each key that differs from the method's
+/// default; and of each swept key, which tell the combinations of one table apart.
+std::string label(const Entry& entry, const structures::Settings& settings,
+                  const Combination& combination, const std::optional<std::string>& variant) {
+    std::vector<std::string> parts;
+    if (variant) parts.push_back(*variant);
+    for (const structures::Parameter& p : entry.parameters) {
+        const structures::Value& value = settings.values().at(p.name);
+        const auto& swept = combination.swept;
+        if ((!variant && value != p.fallback) ||
+            std::find(swept.begin(), swept.end(), p.name) != swept.end())
+            parts.push_back(p.name + "=" + structures::to_string(value));
+    }
+    return parts.empty() ? "default" : fmt::format("{}", fmt::join(parts, ","));
+}
+
 }  // namespace
 
 void read_scenes(const Node& node, const Catalogue& catalogue, std::int64_t seed,
@@ -179,19 +195,7 @@ void read_methods(const Node& node, const Entries& entries, const std::string& w
         if (!entry) fail(*table.find("name"), unknown(what, method.name, names(entries)));
         method.settings = read_settings(table, *entry);
 
-        // The label: what the config calls it, else the keys that differ from the method's
-        // defaults; and the swept keys, which tell the combinations of one table apart.
-        std::vector<std::string> in_label{"name", "variant"};
-        if (!variant) {
-            method.variant = method.settings.label();
-            for (const structures::Parameter& p : entry->parameters)
-                if (method.settings.values().at(p.name) != p.fallback) in_label.push_back(p.name);
-        } else {
-            method.variant = *variant;
-        }
-        const std::string swept = sweep_label(combination, in_label);
-        if (!swept.empty())
-            method.variant = method.variant == "default" ? swept : method.variant + "," + swept;
+        method.variant = label(*entry, method.settings, combination, variant);
         methods.push_back(std::move(method));
     }
 }
