@@ -66,9 +66,10 @@ Image heat_image(std::span<const float> values, int width, int height, float low
     Image image(width, height, 3);
     for (std::size_t i = 0; i < values.size(); ++i) {
         const float t = std::clamp((values[i] - low) / (high - low), 0.0f, 1.0f);
-        const glm::vec3 color = std::isfinite(values[i])
-                                    ? shades[static_cast<std::size_t>(t * (kShades - 1) + 0.5f)]
-                                    : glm::vec3(0, 1, 0);
+        const glm::vec3 color =
+            std::isfinite(values[i])
+                ? shades[static_cast<std::size_t>(std::lround(t * (kShades - 1)))]
+                : glm::vec3(0, 1, 0);
         for (int c = 0; c < 3; ++c) image.values[3 * i + c] = color[c];
     }
     return image;

@@ -36,7 +36,7 @@ void write_png(const std::filesystem::path& path, const Image& image) {
     std::vector<png_byte> pixels(image.values.size());
     std::transform(image.values.begin(), image.values.end(), pixels.begin(), [](float value) {
         const float clamped = value > 0 ? std::min(value, 1.0f) : 0.0f;  // NaN too becomes 0
-        return static_cast<png_byte>(255 * srgb_encode(clamped) + 0.5f);
+        return static_cast<png_byte>(std::lround(255 * srgb_encode(clamped)));
     });
     PngImage png;
     png.width = static_cast<png_uint_32>(image.width);

@@ -155,7 +155,8 @@ GeneratedScene generate(const Settings& settings) {
 
 }  // namespace
 
-const GeneratorRow kCity = {"city", "blocks of towers, flats and houses between streets",
-                            &parameters, &generate};
+GeneratorRow city() {
+    return {"city", "blocks of towers, flats and houses between streets", &parameters, &generate};
+}
 
 }  // namespace experiments::scenes

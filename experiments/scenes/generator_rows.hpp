@@ -8,6 +8,9 @@ namespace experiments::scenes {
 /// The largest mesh a generator may be asked for.
 inline constexpr double kMaxTriangles = 2e8;
 
-extern const GeneratorRow kSpheres, kCity, kPipes, kHairball;
+GeneratorRow spheres();
+GeneratorRow city();
+GeneratorRow pipes();
+GeneratorRow hairball();
 
 }  // namespace experiments::scenes

@@ -8,7 +8,7 @@
 namespace experiments::scenes {
 
 std::span<const GeneratorRow> generators() {
-    static const std::array<GeneratorRow, 4> rows = {kSpheres, kCity, kPipes, kHairball};
+    static const std::array<GeneratorRow, 4> rows = {spheres(), city(), pipes(), hairball()};
     return rows;
 }
 

@@ -6,8 +6,8 @@
 //         GeneratedScene scene = row.generate(settings);   // mesh, camera, light
 //     }
 //
-// All take `triangles` (how many to make, reached to within one object) and `seed`. No triangle is
-// degenerate.
+// All take `triangles` (how many to make, reached to within one object or one step of tessellation)
+// and `seed`. No triangle is degenerate.
 #pragma once
 
 #include <span>

@@ -71,7 +71,8 @@ GeneratedScene generate(const Settings& settings) {
 
 }  // namespace
 
-const GeneratorRow kHairball = {"hairball", "a ball with many thin, curved strands", &parameters,
-                                &generate};
+GeneratorRow hairball() {
+    return {"hairball", "a ball with many thin, curved strands", &parameters, &generate};
+}
 
 }  // namespace experiments::scenes

@@ -136,7 +136,8 @@ GeneratedScene generate(const Settings& settings) {
 
 }  // namespace
 
-const GeneratorRow kPipes = {"pipes", "a tangle of axis-aligned pipes with elbows", &parameters,
-                             &generate};
+GeneratorRow pipes() {
+    return {"pipes", "a tangle of axis-aligned pipes with elbows", &parameters, &generate};
+}
 
 }  // namespace experiments::scenes

@@ -25,8 +25,9 @@ glm::dvec3 Random::direction() {
 
 glm::dvec2 unit_circle(double turns) {
     turns -= std::floor(turns);
-    const int quarter = static_cast<int>(4 * turns + 0.5);
-    const double angle = 2 * std::numbers::pi * (turns - 0.25 * quarter);  // within +-pi/4
+    const auto quarter = std::lround(4 * turns);
+    const double angle =
+        2 * std::numbers::pi * (turns - 0.25 * static_cast<double>(quarter));  // within +-pi/4
     // Taylor series, to the last bit of a double within pi/4; the C library's own sine and cosine
     // differ between platforms.
     double cosine = 0, sine = 0;

@@ -40,7 +40,7 @@ std::size_t tessellation_of(const Settings& settings) {
     std::int64_t tessellation = settings.integer("tessellation");
     if (triangles > 0) {
         const double per_sphere = static_cast<double>(triangles) / static_cast<double>(n * n);
-        tessellation = 2 * static_cast<std::int64_t>(std::sqrt(per_sphere) / 2 + 0.5);
+        tessellation = 2 * std::lround(std::sqrt(per_sphere) / 2);
         if (tessellation < 4)
             throw structures::SettingError(
                 "triangles", fmt::format("'triangles' is {}, but {} x {} spheres take at least {}: "
@@ -75,8 +75,9 @@ GeneratedScene generate(const Settings& settings) {
     for (std::size_t i = 0; i < n * n; ++i) {
         const double radius = 0.3 * (1 + jitter * random.uniform(-0.6, 0.5));
         const double stray = jitter * (0.5 - radius);
-        const glm::dvec3 cell(static_cast<double>(i % n) + 0.5 - half, 0,
-                              static_cast<double>(i / n) + 0.5 - half);
+        const std::size_t column = i % n, row = i / n;
+        const glm::dvec3 cell(static_cast<double>(column) + 0.5 - half, 0,
+                              static_cast<double>(row) + 0.5 - half);
         const glm::dvec3 shift(random.uniform(-stray, stray),
                                radius + 0.05 + 0.4 * jitter * random.uniform(),
                                random.uniform(-stray, stray));
@@ -95,7 +96,8 @@ GeneratedScene generate(const Settings& settings) {
 
 }  // namespace
 
-const GeneratorRow kSpheres = {"spheres", "an n x n field of spheres over a ground plane",
-                               &parameters, &generate};
+GeneratorRow spheres() {
+    return {"spheres", "an n x n field of spheres over a ground plane", &parameters, &generate};
+}
 
 }  // namespace experiments::scenes
