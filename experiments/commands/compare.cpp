@@ -40,7 +40,7 @@ double worsening(const MetricSummary& a, const MetricSummary& b) {
 
 std::string with_spread(const MetricSummary& summary) {
     const auto& s = summary.statistics;
-    const std::string median = measure::readable(s.median, summary.unit);
+    std::string median = measure::readable(s.median, summary.unit);
     if (s.min == s.max) return median;
     return fmt::format("{} [{}, {}]", median, measure::readable(s.ci_low, summary.unit),
                        measure::readable(s.ci_high, summary.unit));

@@ -121,7 +121,7 @@ int list(const std::string& what, bool as_json, const measure::Registries& regis
     std::vector<std::vector<std::string>> rows;
     for (const json& entry : entries) {
         std::string name = entry.at("name");
-        if (entry.contains("index")) name = entry["index"].dump() + "  " + name;
+        if (entry.contains("index")) name = fmt::format("{}  {}", entry["index"].dump(), name);
         rows.push_back({name, entry.at("summary")});
     }
     fmt::print("{}", text_table(rows, 2));

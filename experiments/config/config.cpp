@@ -10,7 +10,7 @@
 namespace experiments::config {
 namespace {
 
-const std::vector<std::string> kLaterKinds = {"optimise", "trace", "collide", "stability"};
+constexpr const char* kLaterKinds[] = {"optimise", "trace", "collide", "stability"};
 
 /// The tables of `[[key]]`. Fails if there is none.
 const std::vector<Node>& list_of_tables(Table& root, const std::string& key) {
@@ -23,9 +23,9 @@ const std::vector<Node>& list_of_tables(Table& root, const std::string& key) {
 }
 
 std::string read_kind(Table& table) {
-    const std::string kind = table.required("kind", table.text("kind"));
+    std::string kind = table.required("kind", table.text("kind"));
     const auto contains = [&](const auto& list) {
-        return std::find(list.begin(), list.end(), kind) != list.end();
+        return std::find(std::begin(list), std::end(list), kind) != std::end(list);
     };
     if (contains(kinds())) return kind;
     const std::string available = fmt::format("{}", fmt::join(kinds(), ", "));
@@ -80,7 +80,7 @@ nlohmann::json to_json(const glm::vec3& v) { return {v.x, v.y, v.z}; }
 nlohmann::json to_json(const structures::Settings& settings) {
     nlohmann::json json = nlohmann::json::object();
     for (const auto& [key, value] : settings.values())
-        std::visit([&](const auto& v) { json[key] = v; }, value);
+        json[key] = std::visit([](const auto& v) { return nlohmann::json(v); }, value);
     return json;
 }
 

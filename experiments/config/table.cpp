@@ -49,7 +49,7 @@ std::optional<std::string> Table::text(const std::string& key) {
 
 std::optional<std::string> Table::choice(const std::string& key,
                                          std::initializer_list<const char*> choices) {
-    const auto value = text(key);
+    auto value = text(key);
     const std::vector<std::string> names(choices.begin(), choices.end());
     if (value && std::find(names.begin(), names.end(), *value) == names.end())
         fail(*node_.find(key), unknown(key, *value, names));

@@ -144,7 +144,7 @@ void close_run(RunFolder& folder, int exit_code, const std::vector<std::string>&
 
 nlohmann::json write_summary(const RunFolder& folder) {
     const auto results = summarise(read_samples(folder.samples()));
-    const nlohmann::json json = measure::to_json(results);
+    nlohmann::json json = measure::to_json(results);
     write_text(folder.path / "summary.json", json.dump(1) + "\n");
     return json;
 }

@@ -28,7 +28,11 @@ struct Key {
     std::string scene, method, variant;
     int frame = 0;
     int repetition = 0;
-    auto operator<=>(const Key&) const = default;
+    bool operator==(const Key&) const = default;
+    bool operator<(const Key& other) const {
+        return std::tie(scene, method, variant, frame, repetition) <
+               std::tie(other.scene, other.method, other.variant, other.frame, other.repetition);
+    }
 };
 
 struct Row {

@@ -11,7 +11,7 @@ namespace {
 std::string with_separators(double value) {
     std::string digits = fmt::format("{:.0f}", value);
     for (int i = int(digits.size()) - 3; i > (digits[0] == '-' ? 1 : 0); i -= 3)
-        digits.insert(i, ",");
+        digits.insert(i, 1, ',');
     return digits;
 }
 

@@ -20,8 +20,13 @@ using Results = std::vector<ResultSummary>;
 
 constexpr const char* kCharted[] = {"build_ms", "query_ms", "total_ms", "sah_cost", "memory_bytes"};
 
+/// As the manifest names the reference method.
+std::string label(const std::string& method, const std::string& variant) {
+    return fmt::format("{} {}", method, variant);
+}
+
 std::string label(const ResultSummary& result) {
-    return result.variant == "default" ? result.method : result.method + " " + result.variant;
+    return result.variant == "default" ? result.method : label(result.method, result.variant);
 }
 
 std::vector<std::string> scene_names(const Results& results) {
@@ -133,11 +138,11 @@ std::string pictures(const std::filesystem::path& run, const nlohmann::json& man
                           variant = image.at("variant"), file = image.at("file");
         const bool common = kind == "shaded" || kind == "visibility";
         if (image.at("scene") != scene || !std::filesystem::exists(run / file)) continue;
-        if (common && method + " " + variant != reference) continue;
+        if (common && label(method, variant) != reference) continue;
         (common ? first : rest) += fmt::format(
             "<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}: {} {}</figcaption></figure>\n",
-            png_data_uri(run / file), escape(kind + " of " + scene), escape(kind), escape(method),
-            escape(variant));
+            png_data_uri(run / file), escape(fmt::format("{} of {}", kind, scene)), escape(kind),
+            escape(method), escape(variant));
     }
     if (first.empty() && rest.empty()) return {};
     return "<h3>Pictures</h3>\n<div class=\"pictures\">\n" + first + rest + "</div>\n";

@@ -1,4 +1,5 @@
 // Runs of the program that succeed, that are interrupted, and that fail in part.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "experiments/measure/samples_file.hpp"
@@ -20,7 +21,7 @@ TEST_F(RunTest, WritesEverythingAndPrintsTheFolderLast) {
     write_config(kTwoMethods);
     const Outcome run = fake("run test.toml --out r");
     ASSERT_EQ(run.code, 0) << run.err;
-    EXPECT_THAT(run.out, EndsWith("\n" + (folder_ / "r").string() + "\n"));
+    EXPECT_THAT(run.out, EndsWith(fmt::format("\n{}\n", (folder_ / "r").string())));
     for (const char* file :
          {"samples.csv", "summary.json", "manifest.json", "report.html", "log.txt"})
         EXPECT_TRUE(fs::exists(folder_ / "r" / file)) << file;
