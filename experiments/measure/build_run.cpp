@@ -32,17 +32,21 @@ void create(Session& session, Contestant& contestant, const SceneInput& input) {
     contestant.own_bytes = session.device.allocated_bytes() - before;
 }
 
-structures::Samples build(Session& session, Contestant& contestant) {
+structures::Samples build(Session& session, Contestant& contestant, std::size_t triangle_count) {
     taskpool::gpu::Device& device = session.device;
     const std::uint64_t others = device.allocated_bytes() - contestant.own_bytes;
     device.reset_peak();
     const taskpool::pool::RunStats stats = taskpool::pool::run(device, contestant.builder->job());
     const std::uint64_t peak = device.peak_bytes() - others;
     contestant.own_bytes = device.allocated_bytes() - others;
-    structures::Samples samples = {{"build_ms", stats.gpu_ms, "ms"},
-                                   {"wall_ms", stats.wall_ms, "ms"},
-                                   {"launches", double(stats.launches)},
-                                   {"memory_bytes", double(peak), "bytes"}};
+    // A builder without device memory works on the host, where the launch's GPU time says nothing.
+    const bool on_host = contestant.builder->required_bytes(triangle_count) == 0;
+    structures::Samples samples = {{"build_ms", on_host ? stats.wall_ms : stats.gpu_ms, "ms"},
+                                   {"wall_ms", stats.wall_ms, "ms"}};
+    if (!on_host) {
+        samples.push_back({"launches", double(stats.launches)});
+        samples.push_back({"memory_bytes", double(peak), "bytes"});
+    }
     // A builder that measures one of these itself (on the host, say) knows better.
     for (structures::Sample& sample : contestant.builder->metrics()) {
         std::erase_if(samples, [&](const auto& s) { return s.metric == sample.metric; });
@@ -80,7 +84,8 @@ void run_scene(Session& session, const config::Scene& scene) {
                                      i < 0 ? "warm-up" : fmt::format("#{}", i + 1)));
             if (!contestant.builder || session.samples.complete(key)) continue;
             const bool done = session.attempt(place(contestant), [&] {
-                const structures::Samples samples = build(session, contestant);
+                const structures::Samples samples =
+                    build(session, contestant, input.mesh.triangle_count());
                 if (i >= 0) session.samples.append(key, samples);
             });
             if (!done) contestant.builder.reset();
