@@ -59,9 +59,10 @@ void trace_packets(RTCScene scene, const ShadowRays& rays, const PointArrays& po
                     own[axis][i] = positions[axis][base + i] - shift[axis];
             std::fill_n(packet.tfar, width, rays.far);
             occluded(valid, scene, &context, &packet);
-            // Embree marks an occluded ray by tfar = -inf.
+            // Embree marks an occluded ray by tfar = -inf, and where the CPU has no such packets
+            // natively it does so to inactive rays too.
             for (int i = 0; i < width; ++i)
-                shadowed |= std::uint32_t{packet.tfar[i] < 0} << (offset + i);
+                shadowed |= std::uint32_t{valid[i] && packet.tfar[i] < 0} << (offset + i);
         }
         words[word] = ~shadowed;
     }
