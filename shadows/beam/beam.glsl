@@ -1,0 +1,179 @@
+// Beam query: one subgroup answers a tile of points by walking a structure with groups of them.
+//
+//     #include "shadows/beam/beam.glsl"
+//     layout(...) ...                              // the structure's parameters
+//     vec3 beam_point(uint point) { ... }          // hooks: world position, primitive id,
+//     uint beam_primitive(uint point) { ... }
+//     void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint primitive) {...}
+//     void beam_walk() { ... beam_meets_box(...); beam_test_triangles(...); }
+//     void main() { beam_light = ...; TileAnswer answer = answer_tile(tile, origin); ... }
+//
+// A tile's points fall into groups (group.glsl): similar directions from the light. The structure's
+// walk finds triangles that may occlude a group; those are culled against the beam, then tested
+// against the points (candidate.glsl). Everything conservative only decides what to skip; points it
+// cannot decide go to the exact test. A walk that runs out of stack, steps or rounds defers its
+// points to the caller, who must answer them another way.
+//
+// The includer defines kDirectional, kStepLimit, kRoundLimit, and includes device.glsl first.
+#ifndef SHADOWS_BEAM_BEAM_GLSL
+#define SHADOWS_BEAM_BEAM_GLSL
+#include "shadows/occlusion.glsl"
+
+vec3 beam_light;  // position, or direction towards a directional light
+
+#include "shadows/beam/points.glsl"
+#include "shadows/beam/group.glsl"
+#include "shadows/beam/candidate.glsl"
+
+// Hooks.
+vec3 beam_point(uint point);
+uint beam_primitive(uint point);
+void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint primitive);
+// Walks the structure with `beam`; stops early when group_finished() or out of steps.
+void beam_walk();
+
+const uint kBeamFinished = 0u, kBeamStackFull = 1u, kBeamStepLimit = 2u, kBeamRoundLimit = 3u;
+
+struct TileAnswer {
+    uint occluded;  // slots
+    uint deferred;  // slots without an answer yet
+    uint ends;      // bit set of why groups were given up: 1 << kBeam...
+    uint groups;
+    uint exact_tests;
+};
+
+// State of the tile under way; uniform over the subgroup except for the masks.
+uint beam_tile;
+uint beam_group;     // slots of the group
+uint beam_occluded;  // slots found occluded, of any group
+uint beam_steps;     // loop iterations so far
+uint beam_end;       // why the walk of the group ended
+uint beam_nodes, beam_triangles, beam_exact_tests;
+bool beam_finished;  // every point of the group is occluded
+
+bool group_finished() { return beam_finished; }
+
+// Limits the walk; false once the steps are used up.
+bool beam_step(uint count) {
+    beam_steps += count;
+    if (beam_steps > kStepLimit) beam_end = kBeamStepLimit;
+    return beam_end == kBeamFinished;
+}
+
+// Exact test of one triangle against the lane's `slots`.
+void test_exactly(uint index, uint slots) {
+    vec3 a, b, c;
+    uint primitive;
+    beam_triangle(index, a, b, c, primitive);
+    [[unroll]] for (uint k = 0; k < kSlots; ++k)
+        if (point_primitive[k] == primitive) slots &= ~(1u << k);
+    if (!subgroupAny(slots != 0)) return;
+    while (true) {
+        if (slots != 0) {
+            const uint k = findLSB(slots);
+            slots &= slots - 1u;
+            const vec3 p = beam_point(tile_point(beam_tile, k));
+            Segment segment;
+            if (kDirectional)
+                segment = directional_segment(p, beam_light);
+            else
+                segment = point_segment(p, beam_light);
+            if (occludes(segment, a, b, c)) beam_occluded |= 1u << k;
+            ++beam_exact_tests;
+        }
+        ++beam_steps;
+        if (!subgroupAny(slots != 0)) break;
+    }
+}
+
+// Tests up to one triangle per lane against the group.
+void beam_test_triangles(uint index, bool used) {
+    Candidate mine;
+    uint verdict = kMiss;
+    if (used) {
+        vec3 a, b, c;
+        uint primitive;
+        beam_triangle(index, a, b, c, primitive);
+        verdict = classify(a, b, c, mine);
+    }
+    if (subgroupAny(verdict == kCovers)) {
+        beam_occluded |= beam_group;
+        beam_finished = true;
+        return;
+    }
+    uvec4 candidates = subgroupBallot(verdict == kMeets);
+    while (true) {
+        uint from;
+        if (candidates.x != 0) {
+            from = findLSB(candidates.x);
+            candidates.x &= candidates.x - 1u;
+        } else if (kLanes > 32 && candidates.y != 0) {
+            from = 32 + findLSB(candidates.y);
+            candidates.y &= candidates.y - 1u;
+        } else {
+            break;
+        }
+        ++beam_steps;
+        uint hit, doubtful;
+        test_points(broadcast(mine, from), hit, doubtful);
+        beam_occluded |= hit & beam_group;
+        doubtful &= beam_group & ~beam_occluded;
+        const uint left = beam_group & ~beam_occluded;
+        uint flags = subgroupOr((doubtful != 0 ? 1u : 0u) | (left != 0 ? 2u : 0u));
+        if ((flags & 1u) != 0) {
+            test_exactly(subgroupShuffle(index, from), doubtful);
+            flags = subgroupAny((beam_group & ~beam_occluded) != 0) ? 2u : 0u;
+        }
+        if ((flags & 2u) == 0) {
+            beam_finished = true;
+            break;
+        }
+    }
+}
+
+// Answers one tile. `origin` is the light, or, for a directional light, a point near the scene.
+TileAnswer answer_tile(uint tile, vec3 origin) {
+    beam_tile = tile;
+    beam_origin = origin;
+    beam_occluded = beam_steps = beam_nodes = beam_triangles = beam_exact_tests = 0;
+    TileAnswer answer = TileAnswer(0, 0, 0, 0, 0);
+    uint todo = 0;
+    [[unroll]] for (uint k = 0; k < kSlots; ++k) {
+        const uint point = tile_point(tile, k);
+        point_primitive[k] = beam_primitive(point);
+        point_d[k] = beam_point(point) - origin;
+        if (point_primitive[k] != kNoPrimitive) {
+            const vec3 size = abs(point_d[k]);
+            if (kDirectional || max(max(size.x, size.y), size.z) > kTinyDistance)
+                todo |= 1u << k;
+            else
+                answer.deferred |= 1u << k;
+        }
+    }
+    // Guarded: drivers may run the body of a loop that has nothing to do.
+    if (subgroupAny(todo != 0)) {
+        while (true) {
+            if (answer.groups == kRoundLimit) {
+                answer.deferred |= todo;
+                answer.ends |= 1u << kBeamRoundLimit;
+                break;
+            }
+            beam_end = kBeamFinished;
+            beam_finished = false;
+            beam_group = take_group(todo, beam_light);
+            todo &= ~beam_group;
+            ++answer.groups;
+            beam_walk();
+            if (beam_end != kBeamFinished) {
+                answer.deferred |= beam_group & ~beam_occluded;
+                answer.ends |= 1u << beam_end;
+            }
+            if (!subgroupAny(todo != 0)) break;
+        }
+    }
+    answer.occluded = beam_occluded;
+    answer.exact_tests = beam_exact_tests;
+    return answer;
+}
+
+#endif
