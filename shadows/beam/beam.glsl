@@ -14,7 +14,7 @@
 // cannot decide go to the exact test. A walk that runs out of stack, steps or rounds defers its
 // points to the caller, who must answer them another way.
 //
-// The includer defines kDirectional, kStepLimit, kRoundLimit, and includes device.glsl first.
+// The includer defines kDirectional, kStepLimit, kRoundLimit, kSplitTriangles, and includes device.glsl first.
 #ifndef SHADOWS_BEAM_BEAM_GLSL
 #define SHADOWS_BEAM_BEAM_GLSL
 #include "shadows/occlusion.glsl"
@@ -33,6 +33,7 @@ void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint prim
 void beam_walk();
 
 const uint kBeamFinished = 0u, kBeamStackFull = 1u, kBeamStepLimit = 2u, kBeamRoundLimit = 3u;
+const uint kBeamSplit = 4u;  // not an end: the group is too expensive as a whole
 
 struct TileAnswer {
     uint occluded;  // slots
@@ -49,6 +50,8 @@ uint beam_occluded;  // slots found occluded, of any group
 uint beam_steps;     // loop iterations so far
 uint beam_end;       // why the walk of the group ended
 uint beam_nodes, beam_triangles, beam_exact_tests;
+uint beam_halvings;         // of the tile's groups
+uint beam_group_triangles;  // tested by this group
 bool beam_finished;  // every point of the group is occluded
 
 bool group_finished() { return beam_finished; }
@@ -60,6 +63,17 @@ bool beam_step(uint count) {
     return beam_end == kBeamFinished;
 }
 
+// Notes triangles about to be tested; false if the group had better be split first.
+bool beam_count_triangles(uint count) {
+    beam_triangles += count;
+    beam_group_triangles += count;
+    if (beam_group_triangles > kSplitTriangles && beam_halvings < kMaxHalvings) {
+        beam_end = kBeamSplit;
+        return false;
+    }
+    return true;
+}
+
 // Exact test of one triangle against the lane's `slots`.
 void test_exactly(uint index, uint slots) {
     vec3 a, b, c;
@@ -67,9 +81,8 @@ void test_exactly(uint index, uint slots) {
     beam_triangle(index, a, b, c, primitive);
     [[unroll]] for (uint k = 0; k < kSlots; ++k)
         if (point_primitive[k] == primitive) slots &= ~(1u << k);
-    if (!subgroupAny(slots != 0)) return;
-    while (true) {
-        if (slots != 0) {
+    if (slots != 0) {
+        while (true) {
             const uint k = findLSB(slots);
             slots &= slots - 1u;
             const vec3 p = beam_point(tile_point(beam_tile, k));
@@ -80,9 +93,8 @@ void test_exactly(uint index, uint slots) {
                 segment = point_segment(p, beam_light);
             if (occludes(segment, a, b, c)) beam_occluded |= 1u << k;
             ++beam_exact_tests;
+            if (slots == 0) break;
         }
-        ++beam_steps;
-        if (!subgroupAny(slots != 0)) break;
     }
 }
 
@@ -102,6 +114,7 @@ void beam_test_triangles(uint index, bool used) {
         return;
     }
     uvec4 candidates = subgroupBallot(verdict == kMeets);
+    if (candidates.xy == uvec2(0)) return;
     while (true) {
         uint from;
         if (candidates.x != 0) {
@@ -115,20 +128,13 @@ void beam_test_triangles(uint index, bool used) {
         }
         ++beam_steps;
         uint hit, doubtful;
+        const uint index_from = subgroupShuffle(index, from);
         test_points(broadcast(mine, from), hit, doubtful);
         beam_occluded |= hit & beam_group;
         doubtful &= beam_group & ~beam_occluded;
-        const uint left = beam_group & ~beam_occluded;
-        uint flags = subgroupOr((doubtful != 0 ? 1u : 0u) | (left != 0 ? 2u : 0u));
-        if ((flags & 1u) != 0) {
-            test_exactly(subgroupShuffle(index, from), doubtful);
-            flags = subgroupAny((beam_group & ~beam_occluded) != 0) ? 2u : 0u;
-        }
-        if ((flags & 2u) == 0) {
-            beam_finished = true;
-            break;
-        }
+        if (doubtful != 0) test_exactly(index_from, doubtful);
     }
+    beam_finished = !subgroupAny((beam_group & ~beam_occluded) != 0);
 }
 
 // Answers one tile. `origin` is the light, or, for a directional light, a point near the scene.
@@ -150,6 +156,8 @@ TileAnswer answer_tile(uint tile, vec3 origin) {
                 answer.deferred |= 1u << k;
         }
     }
+    float limit = kHuge;  // length of a group's sides
+    beam_halvings = 0;
     // Guarded: drivers may run the body of a loop that has nothing to do.
     if (subgroupAny(todo != 0)) {
         while (true) {
@@ -160,11 +168,18 @@ TileAnswer answer_tile(uint tile, vec3 origin) {
             }
             beam_end = kBeamFinished;
             beam_finished = false;
-            beam_group = take_group(todo, beam_light);
+            beam_group = take_group(todo, beam_light, limit);
             todo &= ~beam_group;
             ++answer.groups;
+            beam_group_triangles = 0;
             beam_walk();
-            if (beam_end != kBeamFinished) {
+            if (beam_end == kBeamSplit) {
+                // Thinner beams meet fewer triangles, and fewer points ask about each.
+                const vec2 extent = beam.upper - beam.lower;
+                limit = 0.5 * max(extent.x, extent.y);
+                ++beam_halvings;
+                todo |= beam_group & ~beam_occluded;
+            } else if (beam_end != kBeamFinished) {
                 answer.deferred |= beam_group & ~beam_occluded;
                 answer.ends |= 1u << beam_end;
             }

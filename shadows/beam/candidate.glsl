@@ -15,8 +15,9 @@
 //   being the largest |corner x q| over the rectangle, at most the largest at its centre plus the
 //   corner times the half diagonal. Evaluating n and n . q adds 8 e |a| |b - a| |q|. For a
 //   directional light the same holds with X = |corner - q| across and the edge instead of n.
-//   Plane N = (b - a) x (c - a): the exact test's answer is that of exact arithmetic. Evaluating N
-//   (5 e |b - a| |c - a|) and N . (d - a) adds up to 16 e |b - a| |c - a| (|a| + reach).
+//   Plane N = (b - a) x (c - a): the exact test's answer is that of exact arithmetic. The computed
+//   N' is off by 5 e |b - a| |c - a|, and N' . d - w with w = N' . a is off by that times |d - a|,
+//   plus 8 e |N'| (|a| + |d|) for the roundings of a, d, w and of the sum.
 // The factors below are twice these, and 1-norms stand for lengths.
 #ifndef SHADOWS_BEAM_CANDIDATE_GLSL
 #define SHADOWS_BEAM_CANDIDATE_GLSL
@@ -24,6 +25,7 @@
 struct Candidate {
     vec3 edge_ab, edge_bc, edge_ca;  // factors of u, v, 1
     vec4 plane;                      // factors of u, v, k, 1
+    uint sections;                   // those with points that it may hit
 };
 
 const uint kMiss = 0u, kMeets = 1u, kCovers = 2u;
@@ -64,6 +66,11 @@ vec2 range_of(vec3 f) {  // over the rectangle
     const vec2 a = f.xy * beam.lower, b = f.xy * beam.upper;
     const vec2 least = min(a, b), most = max(a, b);
     return vec2(least.x + least.y, most.x + most.y) + f.z;
+}
+
+float most_of(vec3 f, uint section) {
+    const vec2 most = max(f.xy * section_lower[section], f.xy * section_upper[section]);
+    return most.x + most.y + f.z;
 }
 
 // What the triangle is to the whole beam: kMiss, kMeets, or kCovers if it certainly occludes all
@@ -120,7 +127,8 @@ uint classify(vec3 a, vec3 b, vec3 c, out Candidate candidate) {
                             edge_error(sc, xc, sa, xa, lc, norm1(ca), widest));
     const float occluded_side = kDirectional ? -inside : inside;
     plane *= occluded_side;
-    float plane_error = kPlaneError * size * (la + beam.reach);
+    const float farthest = norm1(max(beam.points_upper - ra, ra - beam.points_lower));
+    float plane_error = kPlaneError * (size * farthest + norm1(normal) * (la + beam.reach));
 
     const vec2 ab_range = range_of(candidate.edge_ab), bc_range = range_of(candidate.edge_bc),
                ca_range = range_of(candidate.edge_ca);
@@ -137,6 +145,13 @@ uint classify(vec3 a, vec3 b, vec3 c, out Candidate candidate) {
         const float plane_least = low.x + low.y + low.z + constant;
         if (any(lessThan(edge_most, -error)) || plane_most < -plane_error) return kMiss;
         if (all(greaterThan(edge_least, error)) && plane_least > plane_error) return kCovers;
+        candidate.sections = 0;
+        [[unroll]] for (uint s = 0; s < kSections; ++s) {
+            if (!(most_of(candidate.edge_ab, s) < -error.x || most_of(candidate.edge_bc, s) < -error.y ||
+                  most_of(candidate.edge_ca, s) < -error.z))
+                candidate.sections |= 1u << s;
+        }
+        if (candidate.sections == 0) return kMiss;
         if (!kDirectional) plane_error *= beam.key.y;
         plane *= certainty(plane_error);
     } else {
@@ -144,6 +159,7 @@ uint classify(vec3 a, vec3 b, vec3 c, out Candidate candidate) {
         // the whole beam is on different sides of two edges.
         if (any(lessThan(edge_most, -error)) && any(greaterThan(edge_least, error))) return kMiss;
         plane = vec4(0);
+        candidate.sections = 0xffu;
         candidate.edge_ab = candidate.edge_bc = candidate.edge_ca = vec3(0);
     }
     candidate.edge_ab *= certainty(error.x);
@@ -158,24 +174,30 @@ Candidate broadcast(Candidate candidate, uint from) {
     candidate.edge_bc = subgroupShuffle(candidate.edge_bc, from);
     candidate.edge_ca = subgroupShuffle(candidate.edge_ca, from);
     candidate.plane = subgroupShuffle(candidate.plane, from);
+    candidate.sections = subgroupShuffle(candidate.sections, from);
     return candidate;
 }
 
 // Slots that the candidate certainly hits, and those where it may.
 void test_points(Candidate c, out uint hit, out uint doubtful) {
     hit = 0;
-    uint miss = 0;
-    [[unroll]] for (uint k = 0; k < kSlots; ++k) {
-        const float u = point_u[k], v = point_v[k];
-        const float ab = c.edge_ab.x * u + (c.edge_ab.y * v + c.edge_ab.z);
-        const float bc = c.edge_bc.x * u + (c.edge_bc.y * v + c.edge_bc.z);
-        const float ca = c.edge_ca.x * u + (c.edge_ca.y * v + c.edge_ca.z);
-        const float side = c.plane.x * u + (c.plane.y * v + (c.plane.z * point_k[k] + c.plane.w));
-        const float least = min(min(ab, bc), min(ca, side));
-        hit |= least > 1.0 ? 1u << k : 0u;
-        miss |= least < -1.0 ? 1u << k : 0u;
+    doubtful = 0;
+    [[unroll]] for (uint s = 0; s < kSections; ++s) {
+        if (!has_bit(c.sections, s)) continue;
+        [[unroll]] for (uint i = 0; i < kSectionSlots; ++i) {
+            const uint k = s * kSectionSlots + i;
+            const float u = point_u[k], v = point_v[k];
+            const float ab = c.edge_ab.x * u + (c.edge_ab.y * v + c.edge_ab.z);
+            const float bc = c.edge_bc.x * u + (c.edge_bc.y * v + c.edge_bc.z);
+            const float ca = c.edge_ca.x * u + (c.edge_ca.y * v + c.edge_ca.z);
+            const float side =
+                c.plane.x * u + (c.plane.y * v + (c.plane.z * point_k[k] + c.plane.w));
+            const float least = min(min(ab, bc), min(ca, side));
+            hit |= least > 1.0 ? 1u << k : 0u;
+            doubtful |= least < -1.0 ? 0u : 1u << k;
+        }
     }
-    doubtful = ~(hit | miss);
+    doubtful &= ~hit;
 }
 
 #endif

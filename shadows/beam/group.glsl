@@ -16,13 +16,20 @@ uint point_primitive[kSlots];
 
 vec3 beam_origin;
 
+// The tile's points in runs of 32 or more, each with its own rectangle of u and v: small triangles
+// are tested against the runs that they can meet.
+const uint kSections = kSlots < 8 ? kSlots : 8;
+const uint kSectionSlots = kSlots / kSections;
+vec2 section_lower[kSections], section_upper[kSections];
+
 struct Beam {
     int axis;          // of the world that is z here
     float mirror;      // 1 or -1: factor of that axis
     vec2 tilt;         // directional: t.xy / t.z
     vec2 lower, upper; // the rectangle of u and v
     vec2 key;          // smallest and largest k
-    vec3 box_lower, box_upper;    // of the points: x, y, z (point light) or u, v, z (directional)
+    vec3 points_lower, points_upper;  // box of the points: x, y, z
+    vec3 box_lower, box_upper;    // the same (point light), or in u, v, z (directional)
     vec3 hull_lower, hull_upper;  // box of all segments, x, y, z
     // Side planes: inside where x - slope z >= offset (lower) and <= offset (upper), same for y.
     vec2 slope_lower, slope_upper, offset_lower, offset_upper;
@@ -44,6 +51,8 @@ const float kWidestSlope = 4.0;
 // A group splits at an empty interval of this share of its extent, at most this often.
 const float kGapShare = 0.35;
 const uint kMaxGapSplits = 4u;
+// A group whose beam meets too many triangles is halved, at most this often in each direction.
+const uint kMaxHalvings = 4u;
 
 void bounds_of(uint bits, out vec3 lower, out vec3 upper) {
     lower = vec3(kHuge);
@@ -108,6 +117,23 @@ void rectangle_of(uint bits) {
     beam.upper = reduce_max(upper);
 }
 
+// Rectangles of the sections, widened like the beam's own; that of a section without points of the
+// group is empty.
+void rectangles_of_sections(uint bits, vec2 slack) {
+    [[unroll]] for (uint s = 0; s < kSections; ++s) {
+        vec2 lower = vec2(kHuge), upper = vec2(-kHuge);
+        [[unroll]] for (uint i = 0; i < kSectionSlots; ++i) {
+            const uint k = s * kSectionSlots + i;
+            const vec2 q = vec2(point_u[k], point_v[k]);
+            const bool in_group = has_bit(bits, k);
+            lower = min(lower, in_group ? q : vec2(kHuge));
+            upper = max(upper, in_group ? q : vec2(-kHuge));
+        }
+        section_lower[s] = reduce_min(lower) - slack;
+        section_upper[s] = reduce_max(upper) + slack;
+    }
+}
+
 // Cuts the group where its directions leave the widest gap around the middle, if it is wide:
 // depth edges otherwise make one fat beam of two thin ones. Keeps the lower side.
 uint split_at_gaps(uint bits) {
@@ -137,8 +163,25 @@ uint split_at_gaps(uint bits) {
     return bits;
 }
 
-// Takes the next group out of `todo` (not 0 in some lane) and sets up its beam.
-uint take_group(uint todo, vec3 towards_light) {
+// Cuts a group at its middle until no side is longer than `limit`.
+uint split_to_limit(uint bits, float limit) {
+    for (uint split = 0; split < 2 * kMaxHalvings; ++split) {
+        const vec2 extent = beam.upper - beam.lower;
+        if (max(extent.x, extent.y) <= limit) break;
+        const vec2 middle = 0.5 * beam.lower + 0.5 * beam.upper;
+        const bool by_u = extent.x >= extent.y;
+        uint kept = 0;
+        [[unroll]] for (uint k = 0; k < kSlots; ++k)
+            if (by_u ? point_u[k] <= middle.x : point_v[k] <= middle.y) kept |= 1u << k;
+        bits &= kept;
+        rectangle_of(bits);
+    }
+    return bits;
+}
+
+// Takes the next group out of `todo` (not 0 in some lane) and sets up its beam, no side of which is
+// longer than `limit`.
+uint take_group(uint todo, vec3 towards_light, float limit) {
     uint bits = todo;
     vec3 lower, upper;
     bounds_of(bits, lower, upper);
@@ -153,17 +196,21 @@ uint take_group(uint todo, vec3 towards_light) {
     }
     project();
     bits = split_at_gaps(bits);
+    if (limit < kHuge) bits = split_to_limit(bits, limit);
     if (subgroupAny(bits != todo)) bounds_of(bits, lower, upper);
     const vec3 farthest = max(abs(lower), abs(upper));
     beam.reach = farthest.x + farthest.y + farthest.z;
     const vec3 p = to_beam(lower), q = to_beam(upper);
     const vec3 box_lower = min(p, q), box_upper = max(p, q);
+    beam.points_lower = box_lower;
+    beam.points_upper = box_upper;
     // Rounding of u and v, and of the segment's own direction (2^-20 = 16 roundings).
     const float kRound = 9.5367431640625e-7;
     if (kDirectional) {
         const vec2 slack = vec2(beam.reach * kRound);
         beam.lower -= slack;
         beam.upper += slack;
+        rectangles_of_sections(bits, slack);
         beam.key = vec2(box_lower.z, box_upper.z);
         beam.box_lower = vec3(beam.lower, box_lower.z);
         beam.box_upper = vec3(beam.upper, box_upper.z);
@@ -178,6 +225,7 @@ uint take_group(uint todo, vec3 towards_light) {
         const vec2 slack = max(max(abs(beam.lower), abs(beam.upper)), vec2(1)) * kRound;
         beam.lower -= slack;
         beam.upper += slack;
+        rectangles_of_sections(bits, slack);
         beam.key = vec2(1.0 / box_upper.z, 1.0 / box_lower.z);
         beam.box_lower = box_lower;
         beam.box_upper = box_upper;

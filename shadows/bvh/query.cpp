@@ -79,7 +79,8 @@ Kernel Query::kernel(bool directional, bool deferred) const {
                    {6, deferred},
                    {7, config_.list},
                    {8, config_.rounds},
-                   {9, kTilePoints / device_.subgroup_size()}});
+                   {9, kTilePoints / device_.subgroup_size()},
+                   {10, config_.split}});
 }
 
 const Query::Kernels& Query::kernels(bool directional) {

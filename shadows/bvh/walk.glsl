@@ -89,8 +89,7 @@ void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint prim
 
 void process_list(uint list, uint count) {
     memoryBarrier(gl_ScopeSubgroup, gl_StorageSemanticsBuffer, gl_SemanticsAcquireRelease);
-    beam_triangles += count;
-    if (count == 0) return;
+    if (count == 0 || !beam_count_triangles(count)) return;
     uint i = 0;
     while (true) {
         const bool used = i + lane() < count;
@@ -150,6 +149,6 @@ void beam_walk() {
             process_list(list, list_count);
             list_count = 0;
         }
-        if (done || group_finished() || !beam_step(1)) break;
+        if (done || group_finished() || beam_end != kBeamFinished || !beam_step(1)) break;
     }
 }
