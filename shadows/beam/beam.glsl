@@ -50,6 +50,8 @@ uint beam_occluded;  // slots found occluded, of any group
 uint beam_steps;     // loop iterations so far
 uint beam_end;       // why the walk of the group ended
 uint beam_nodes, beam_triangles, beam_exact_tests;
+uint beam_recent = 0xffffffffu;  // a triangle that has occluded a whole group, one per lane
+uint beam_recent_count = 0;
 uint beam_halvings;         // of the tile's groups
 uint beam_group_triangles;  // tested by this group
 bool beam_finished;  // every point of the group is occluded
@@ -79,8 +81,15 @@ void test_exactly(uint index, uint slots) {
     vec3 a, b, c;
     uint primitive;
     beam_triangle(index, a, b, c, primitive);
-    [[unroll]] for (uint k = 0; k < kSlots; ++k)
-        if (point_primitive[k] == primitive) slots &= ~(1u << k);
+    // Neither the receiver itself, nor directions outside of the triangle's own rectangle: bounds on
+    // the edge functions grow with the beam and are poor for triangles much smaller than it.
+    vec2 lower, upper;
+    footprint(a, b, c, lower, upper);
+    [[unroll]] for (uint k = 0; k < kSlots; ++k) {
+        if (point_primitive[k] == primitive || point_u[k] < lower.x || point_u[k] > upper.x ||
+            point_v[k] < lower.y || point_v[k] > upper.y)
+            slots &= ~(1u << k);
+    }
     if (slots != 0) {
         while (true) {
             const uint k = findLSB(slots);
@@ -111,6 +120,11 @@ void beam_test_triangles(uint index, bool used) {
     if (subgroupAny(verdict == kCovers)) {
         beam_occluded |= beam_group;
         beam_finished = true;
+        const uint by = subgroupShuffle(index, subgroupBallotFindLSB(subgroupBallot(verdict == kCovers)));
+        if (!subgroupAny(beam_recent == by)) {
+            if (beam_recent_count % kLanes == lane()) beam_recent = by;
+            ++beam_recent_count;
+        }
         return;
     }
     uvec4 candidates = subgroupBallot(verdict == kMeets);
@@ -172,11 +186,13 @@ TileAnswer answer_tile(uint tile, vec3 origin) {
             todo &= ~beam_group;
             ++answer.groups;
             beam_group_triangles = 0;
-            beam_walk();
+            // What covered a tile lately may well cover this one.
+            if (beam_recent_count > 0) beam_test_triangles(beam_recent, beam_recent != 0xffffffffu);
+            if (!beam_finished) beam_walk();
             if (beam_end == kBeamSplit) {
                 // Thinner beams meet fewer triangles, and fewer points ask about each.
                 const vec2 extent = beam.upper - beam.lower;
-                limit = 0.5 * max(extent.x, extent.y);
+                limit = 0.25 * max(extent.x, extent.y);
                 ++beam_halvings;
                 todo |= beam_group & ~beam_occluded;
             } else if (beam_end != kBeamFinished) {

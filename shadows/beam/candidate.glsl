@@ -73,6 +73,34 @@ float most_of(vec3 f, uint section) {
     return most.x + most.y + f.z;
 }
 
+// Rectangle of u and v that holds every point the triangle may occlude, corners off by the bound
+// above; the whole plane if a corner is not in front of the light.
+void footprint(vec3 a, vec3 b, vec3 c, out vec2 lower, out vec2 upper) {
+    const vec3 ra = to_beam(a - beam_origin), rb = to_beam(b - beam_origin),
+               rc = to_beam(c - beam_origin);
+    const float slack = kEdgeError * (max(max(norm1(ra), norm1(rb)), norm1(rc)) + beam.reach);
+    vec2 qa, qb, qc, margin;
+    if (kDirectional) {
+        qa = ra.xy - beam.tilt * ra.z;
+        qb = rb.xy - beam.tilt * rb.z;
+        qc = rc.xy - beam.tilt * rc.z;
+        margin = slack * (1.0 + abs(beam.tilt));
+    } else {
+        const float nearest = min(min(ra.z, rb.z), rc.z);
+        if (!(nearest > 2.0 * slack)) {
+            lower = vec2(-kHuge);
+            upper = vec2(kHuge);
+            return;
+        }
+        qa = ra.xy / ra.z;
+        qb = rb.xy / rb.z;
+        qc = rc.xy / rc.z;
+        margin = slack / nearest * 2.0 * (1.0 + max(max(abs(qa), abs(qb)), abs(qc)));
+    }
+    lower = min(min(qa, qb), qc) - margin;
+    upper = max(max(qa, qb), qc) + margin;
+}
+
 // What the triangle is to the whole beam: kMiss, kMeets, or kCovers if it certainly occludes all
 // points.
 uint classify(vec3 a, vec3 b, vec3 c, out Candidate candidate) {

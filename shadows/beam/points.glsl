@@ -31,26 +31,43 @@ vec2 reduce_min(vec2 v) { return vec2(reduce_min(v.x), reduce_min(v.y)); }
 vec2 reduce_max(vec2 v) { return vec2(reduce_max(v.x), reduce_max(v.y)); }
 vec3 reduce_min(vec3 v) { return vec3(reduce_min(v.xy), reduce_min(v.z)); }
 vec3 reduce_max(vec3 v) { return vec3(reduce_max(v.xy), reduce_max(v.z)); }
-// Word `w` of a tile's bits, from each lane's mask of slots: bit i is point 32 w + i of the tile.
-uint tile_word(uint slot_bits, uint w) {
-    if (kLanes <= 32) {
-        const uint per_word = 32 / kLanes;
-        uint bits = 0;
-        [[unroll]] for (uint i = 0; i < per_word; ++i)
-            bits |= ((slot_bits >> (w * per_word + i)) & 1u) << (i * kLanes + lane());
-        return subgroupOr(bits);
-    }
-    return subgroupBallot(has_bit(slot_bits, w / 2))[w & 1u];
+// Swaps index bits a < b of the positions in a word; `low` has the positions with a = 1, b = 0.
+uint swap_index_bits(uint word, uint shift, uint low) {
+    const uint difference = (word >> shift ^ word) & low;
+    return word ^ difference ^ difference << shift;
 }
 
-// Writes a tile's bits: lane w writes word w.
-void store_tile(UintArray target, uint tile, uint slot_bits) {
-    uint mine = 0;
-    [[unroll]] for (uint w = 0; w < 8; ++w) {
-        const uint word = tile_word(slot_bits, w);
-        if (lane() == w) mine = word;
+// From each lane's mask of slots to words of 32 points in order: lane w gets word w.
+uint tile_word(uint slots) {
+    uint word = 0;
+    if (kLanes == 8) {
+        // A transposition of bits: 5 bits of slot index in a word, 3 of lane index. Three exchanges
+        // swap the slot's upper bits with the lane's; the lane bits then move to the low end.
+        [[unroll]] for (uint b = 0; b < 3; ++b) {
+            const uint shift = 4u << b;
+            const uint low = b == 0 ? 0x0f0f0f0fu : b == 1 ? 0x00ff00ffu : 0x0000ffffu;
+            const uint other = subgroupShuffleXor(slots, 1u << b);
+            slots = has_bit(lane(), b) ? (slots & ~low) | (other & ~low) >> shift
+                                       : (slots & low) | (other & low) << shift;
+        }
+        slots = swap_index_bits(slots, 14, 0x0000ccccu);
+        slots = swap_index_bits(slots, 7, 0x00aa00aau);
+        slots = swap_index_bits(slots, 2, 0x0c0c0c0cu);
+        return swap_index_bits(slots, 1, 0x22222222u);
     }
-    if (lane() < 8) target.at[tile * 8 + lane()] = mine;
+    [[unroll]] for (uint k = 0; k < kSlots; ++k) {
+        const uvec2 vote = subgroupBallot(has_bit(slots, k)).xy;
+        const uint first = k * kLanes;  // point within the tile
+        if (lane() == first / 32) word |= vote.x << (first % 32);
+        if (kLanes == 64 && lane() == first / 32 + 1) word |= vote.y;
+    }
+    return word;
+}
+
+// Writes a tile's bits: bit i of word w is point 32 w + i of the tile.
+void store_tile(UintArray target, uint tile, uint slots) {
+    const uint word = tile_word(slots);
+    if (lane() < 8) target.at[tile * 8 + lane()] = word;
 }
 
 #endif

@@ -4,7 +4,7 @@
 #include "shadows/bvh/query.glsl"
 layout(constant_id = 7) const uint kListLimit = 256u;  // triangles collected before they are tested
 layout(constant_id = 8) const uint kRoundLimit = 12u;  // groups per tile
-layout(constant_id = 10) const uint kSplitTriangles = 256u;  // that a group may meet before it is halved
+layout(constant_id = 10) const uint kSplitTriangles = 384u;  // that a group may meet before it is halved
 #include "shadows/beam/beam.glsl"
 
 vec3 beam_point(uint point) { return position_of(point); }

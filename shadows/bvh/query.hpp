@@ -37,7 +37,7 @@ struct QueryConfig {
     std::uint32_t list = 256;         ///< triangles collected before they are processed
     std::uint32_t steps = 1'000'000;  ///< loop iterations of one traversal
     std::uint32_t rounds = 64;        ///< groups that the points of one tile may fall into
-    std::uint32_t split = 256;        ///< triangles a group may meet before it is halved
+    std::uint32_t split = 384;        ///< triangles a group may meet before it is halved
     // Limits of the per-point walk.
     std::uint32_t point_stack = 32;
     std::uint32_t point_steps = 10'000'000;
