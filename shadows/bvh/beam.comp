@@ -16,22 +16,16 @@ void main() {
     beam_light = push.light;
     const WideHeader header = push.header.header;
     const vec3 origin = kDirectional ? 0.5 * header.origin + 0.5 * header.upper : push.light;
-    uint taken = 0, finished = 0, ends[4] = uint[4](0, 0, 0, 0), deferred_points = 0;
+    uint taken = 0, finished = 0, ends[4] = uint[4](0, 0, 0, 0);
     uint exact_tests = 0, groups = 0;
     while (true) {
         const uint tile = next_tile(taken);
         if (tile == kNoTile) break;
         const TileAnswer answer = answer_tile(tile, origin);
         store_tile(push.visible, tile, ~answer.occluded);
-        if (answer.ends != 0 || subgroupAny(answer.deferred != 0)) {
-            store_tile(push.deferred, tile, answer.deferred);
-            if (lane() == 0)
-                push.tiles.at[atomicAdd(push.status.at.deferred_groups_x, 1u)] = tile;
-            deferred_points += bitCount(answer.deferred);
-            [[unroll]] for (uint end = 1; end < 4; ++end) ends[end] += answer.ends >> end & 1u;
-        } else {
-            ++finished;
-        }
+        defer(tile, answer.deferred);
+        finished += answer.ends == 0 ? 1 : 0;
+        [[unroll]] for (uint end = 1; end < 4; ++end) ends[end] += answer.ends >> end & 1u;
         if (kStatistics) {
             exact_tests += answer.exact_tests;
             groups += answer.groups;
@@ -39,16 +33,12 @@ void main() {
                 push.costs.at[tile_point(tile, k)] = PointCost(beam_nodes, beam_triangles);
         }
     }
-    deferred_points = subgroupAdd(deferred_points);
     if (kStatistics) exact_tests = subgroupAdd(exact_tests);
     if (lane() == 0) {
         atomicAdd(push.status.at.finished_tiles, finished);
-        if (deferred_points > 0) {
-            atomicAdd(push.status.at.deferred_points, deferred_points);
-            atomicAdd(push.status.at.stack_full, ends[kBeamStackFull]);
-            atomicAdd(push.status.at.step_limit, ends[kBeamStepLimit]);
-            atomicAdd(push.status.at.round_limit, ends[kBeamRoundLimit]);
-        }
+        atomicAdd(push.status.at.stack_full, ends[kBeamStackFull]);
+        atomicAdd(push.status.at.step_limit, ends[kBeamStepLimit]);
+        atomicAdd(push.status.at.round_limit, ends[kBeamRoundLimit]);
         if (kStatistics) {
             atomicAdd(push.status.at.exact_tests, exact_tests);
             atomicAdd(push.status.at.groups, groups);

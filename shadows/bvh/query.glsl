@@ -52,6 +52,15 @@ uint next_tile(inout uint taken) {
     return tile < push.point_count / kTilePoints ? tile : kNoTile;
 }
 
+// Leaves a tile's `slots` to the per-point walk, if there are any.
+void defer(uint tile, uint slots) {
+    if (!subgroupAny(slots != 0)) return;
+    store_tile(push.deferred, tile, slots);
+    if (lane() == 0) push.tiles.at[atomicAdd(push.status.at.deferred_groups_x, 1u)] = tile;
+    const uint count = subgroupAdd(bitCount(slots));
+    if (lane() == 0) atomicAdd(push.status.at.deferred_points, count);
+}
+
 void count_status(uint stack_full, uint step_limit, uint incomplete) {
     if (subgroupAny((stack_full | step_limit | incomplete) != 0)) {
         atomicAdd(push.status.at.stack_full, stack_full);

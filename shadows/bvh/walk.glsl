@@ -2,29 +2,10 @@
 //
 // Eight lanes test a node's eight children at once (wide subgroups: several nodes). Hits among the
 // inner children become one stack entry, hits among the leaves append their triangles to a list,
-// which is worked off when it is full or the stack is empty. The stack lies in registers across
-// the subgroup, entry i in lane i % size: no memory is touched, and it is as deep as the tree.
+// which is worked off when it is full or the stack is empty.
+#include "shadows/bvh/subgroup_stack.glsl"
 
-const uint kStackRegisters = 4u;
 const uint kNodesAtOnce = kLanes / kWidth;
-uint stack_part[kStackRegisters];
-uint stack_depth;
-
-uint stack_capacity() { return min(kStackLimit, kStackRegisters * kLanes); }
-
-void stack_push(uint entry) {
-    [[unroll]] for (uint r = 0; r < kStackRegisters; ++r)
-        if (stack_depth == r * kLanes + lane()) stack_part[r] = entry;
-    ++stack_depth;
-}
-
-uint stack_pop() {
-    --stack_depth;
-    uint part = stack_part[0];
-    [[unroll]] for (uint r = 1; r < kStackRegisters; ++r)
-        if (stack_depth / kLanes == r) part = stack_part[r];
-    return subgroupShuffle(part, stack_depth % kLanes);
-}
 
 // A node's children as bounds in the frame of the beam.
 struct BeamGrid {
