@@ -25,9 +25,11 @@ Trace trace_of(std::uint32_t width) {
             return trace_packets_8;
         case 16:
             return trace_packets_16;
+        case 64:
+            return trace_streams;
         default:
-            throw std::invalid_argument(
-                fmt::format("embree: width is {}; give 8, 16, or 0 for the faster", width));
+            throw std::invalid_argument(fmt::format(
+                "embree: width is {}; give 1, 8, 16, 64, or 0 for the faster packets", width));
     }
 }
 

@@ -2,6 +2,7 @@
 //
 //     embree         rtcOccluded1, one ray per point
 //     embree_packet  rtcOccluded8 or 16, one packet per 4 x 2 or 4 x 4 pixels
+//     embree_stream  rtcOccludedNp, one coherent stream per 16 x 4 pixels
 #pragma once
 
 #include <memory>
@@ -14,8 +15,8 @@
 namespace shadows::embree {
 
 struct Config {
-    /// Rays per call: 1, 8 or 16; 0: the faster of 8 and 16 on this host, found on a sample of the
-    /// first query's points before its time is taken.
+    /// Rays per call: 1, packets of 8 or 16, or streams of 64; 0: the faster packets on this host,
+    /// found on a sample of the first query's points before its time is taken.
     std::uint32_t width = 1;
     Quality quality = Quality::medium;
     float bias = 1e-5f;          ///< fraction of the segment at the receiver that is not searched

@@ -1,4 +1,6 @@
 // What this folder adds to the registry of shadow methods.
+#include <fmt/format.h>
+
 #include "shadows/embree/embree.hpp"
 
 namespace shadows::embree {
@@ -9,7 +11,10 @@ using structures::Settings;
 
 const std::vector<Parameter>& common_parameters() {
     static const std::vector<Parameter> parameters = {
-        {"quality", std::string("medium"), "Embree's build quality", {"low", "medium", "high"}},
+        {"quality",
+         std::string("medium"),
+         "Embree's build quality; Embree 3.13 builds the same robust tree for all three",
+         {"low", "medium", "high"}},
         {"bias",
          double{Config{}.bias},
          "fraction of the segment next to the receiver that is not searched",
@@ -21,7 +26,7 @@ const std::vector<Parameter>& common_parameters() {
     return parameters;
 }
 
-std::span<const Parameter> single_parameters() { return common_parameters(); }
+std::span<const Parameter> plain_parameters() { return common_parameters(); }
 
 std::span<const Parameter> packet_parameters() {
     static const std::vector<Parameter> parameters = [] {
@@ -55,8 +60,15 @@ std::unique_ptr<Method> create_single(taskpool::gpu::Device&, const Settings& se
 std::unique_ptr<Method> create_packet(taskpool::gpu::Device&, const Settings& settings) {
     Config config = common_config(settings);
     config.width = static_cast<std::uint32_t>(settings.integer("width"));
-    if (config.width == 1)
-        throw structures::SettingError("width", "'width' is 1; expected 8, 16 or 0");
+    if (config.width != 0 && config.width != 8 && config.width != 16)
+        throw structures::SettingError(
+            "width", fmt::format("'width' is {}; expected 8, 16, or 0", config.width));
+    return std::make_unique<EmbreeMethod>(config);
+}
+
+std::unique_ptr<Method> create_stream(taskpool::gpu::Device&, const Settings& settings) {
+    Config config = common_config(settings);
+    config.width = 64;
     return std::make_unique<EmbreeMethod>(config);
 }
 
@@ -64,10 +76,12 @@ std::unique_ptr<Method> create_packet(taskpool::gpu::Device&, const Settings& se
 
 std::span<const MethodRow> rows() {
     static const MethodRow all[] = {
-        {"embree", "Intel Embree on the CPU, one shadow ray at a time", &single_parameters,
+        {"embree", "Intel Embree on the CPU, one shadow ray at a time", &plain_parameters,
          &create_single},
         {"embree_packet", "Intel Embree on the CPU, packets of 8 or 16 shadow rays",
          &packet_parameters, &create_packet},
+        {"embree_stream", "Intel Embree on the CPU, coherent streams of 64 shadow rays",
+         &plain_parameters, &create_stream},
     };
     return all;
 }

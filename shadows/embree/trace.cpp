@@ -21,12 +21,19 @@ void occluded(const int* valid, RTCScene scene, RTCIntersectContext* context, RT
 void occluded(const int* valid, RTCScene scene, RTCIntersectContext* context, RTCRay16* rays) {
     rtcOccluded16(valid, scene, context, rays);
 }
+template <int width>
+void occluded(const int*, RTCScene scene, RTCIntersectContext* context, RTCRayNt<width>* rays) {
+    const RTCRayNp pointers = {rays->org_x, rays->org_y, rays->org_z, rays->tnear,
+                               rays->dir_x, rays->dir_y, rays->dir_z, rays->time,
+                               rays->tfar,  rays->mask,  rays->id,    rays->flags};
+    rtcOccludedNp(scene, context, &pointers, width);
+}
 
 template <typename Packet, int width>
 void trace_packets(RTCScene scene, const ShadowRays& rays, const PointArrays& points,
                    std::uint32_t first, std::uint32_t count, std::span<std::uint32_t> words) {
     RTCIntersectContext context = coherent_context();
-    Packet packet;
+    alignas(64) Packet packet;
     alignas(64) int valid[width];
     // The half of each ray that all have in common; the loop writes the other half.
     float* const common[3] = {rays.from_light ? packet.org_x : packet.dir_x,
@@ -44,27 +51,28 @@ void trace_packets(RTCScene scene, const ShadowRays& rays, const PointArrays& po
     std::fill_n(packet.id, width, 0u);
     std::fill_n(packet.flags, width, 0u);
 
-    for (std::uint32_t word = first / 32; word < (first + count) / 32; ++word) {
-        std::uint32_t shadowed = 0;
-        for (std::uint32_t offset = 0; offset < 32; offset += width) {
-            const std::uint32_t base = word * 32 + offset;
-            int any_valid = 0;
-            for (int i = 0; i < width; ++i) {
-                valid[i] = points.primitive[base + i] == kNoPrimitive ? 0 : -1;
-                any_valid |= valid[i];
-            }
-            if (!any_valid) continue;
-            for (int axis = 0; axis < 3; ++axis)
-                for (int i = 0; i < width; ++i)
-                    own[axis][i] = positions[axis][base + i] - shift[axis];
-            std::fill_n(packet.tfar, width, rays.far);
-            occluded(valid, scene, &context, &packet);
-            // Embree marks an occluded ray by tfar = -inf, and where the CPU has no such packets
-            // natively it does so to inactive rays too.
-            for (int i = 0; i < width; ++i)
-                shadowed |= std::uint32_t{valid[i] && packet.tfar[i] < 0} << (offset + i);
+    std::fill_n(words.begin() + first / 32, count / 32, ~0u);
+    for (std::uint32_t base = first; base < first + count; base += width) {
+        int any_valid = 0;
+        for (int i = 0; i < width; ++i) {
+            valid[i] = points.primitive[base + i] == kNoPrimitive ? 0 : -1;
+            any_valid |= valid[i];
+            // Streams take no mask: an inactive ray ends before it begins.
+            packet.tfar[i] = valid[i] ? rays.far : -1;
         }
-        words[word] = ~shadowed;
+        if (!any_valid) continue;
+        for (int axis = 0; axis < 3; ++axis)
+            for (int i = 0; i < width; ++i) own[axis][i] = positions[axis][base + i] - shift[axis];
+        occluded(valid, scene, &context, &packet);
+        // Embree marks an occluded ray by tfar = -inf, and where the CPU has no such packets
+        // natively it does so to inactive rays too.
+        for (int start = 0; start < width; start += 32) {
+            std::uint32_t shadowed = 0;
+            for (int i = start; i < std::min(start + 32, width); ++i)
+                shadowed |= static_cast<std::uint32_t>(valid[i] & (packet.tfar[i] < 0))
+                            << (i - start);
+            words[(base + start) / 32] &= ~(shadowed << (base + start) % 32);
+        }
     }
 }
 
@@ -75,7 +83,9 @@ ShadowRays::ShadowRays(const structures::geometry::Light& light, float scene_dia
       vector(light.vector),
       near(from_light ? 0 : bias),
       far(from_light ? 1 - bias : kInfinity) {
-    if (!from_light) vector = -glm::normalize(vector) * std::max(scene_diagonal, 1e-30f);
+    // In double precision, where no float's square under- or overflows.
+    if (!from_light)
+        vector = -glm::normalize(glm::dvec3(vector)) * std::max(double{scene_diagonal}, 1e-30);
 }
 
 void trace_single(RTCScene scene, const ShadowRays& rays, const PointArrays& points,
@@ -111,6 +121,10 @@ void trace_packets_8(RTCScene scene, const ShadowRays& rays, const PointArrays& 
 void trace_packets_16(RTCScene scene, const ShadowRays& rays, const PointArrays& points,
                       std::uint32_t first, std::uint32_t count, std::span<std::uint32_t> words) {
     trace_packets<RTCRay16, 16>(scene, rays, points, first, count, words);
+}
+void trace_streams(RTCScene scene, const ShadowRays& rays, const PointArrays& points,
+                   std::uint32_t first, std::uint32_t count, std::span<std::uint32_t> words) {
+    trace_packets<RTCRayNt<64>, 64>(scene, rays, points, first, count, words);
 }
 
 }  // namespace shadows::embree

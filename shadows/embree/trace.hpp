@@ -1,4 +1,5 @@
-// Shadow rays of a range of points through Embree, one at a time or in packets.
+// Shadow rays of a range of points through Embree, one at a time, in packets or in
+// streams.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -27,7 +28,7 @@ struct ShadowRays {
     float near, far;
 };
 
-/// Points first .. first + count (multiples of 32) of `points`: sets their bits in `words`, the
+/// Points first .. first + count (multiples of 64) of `points`: sets their bits in `words`, the
 /// whole visibility mask, 1 = lit. Points without geometry are not traced and get 1.
 using Trace = void (*)(RTCScene scene, const ShadowRays& rays, const PointArrays& points,
                        std::uint32_t first, std::uint32_t count, std::span<std::uint32_t> words);
@@ -39,5 +40,8 @@ void trace_packets_8(RTCScene scene, const ShadowRays& rays, const PointArrays& 
                      std::uint32_t first, std::uint32_t count, std::span<std::uint32_t> words);
 void trace_packets_16(RTCScene scene, const ShadowRays& rays, const PointArrays& points,
                       std::uint32_t first, std::uint32_t count, std::span<std::uint32_t> words);
+/// Coherent streams of 64 consecutive points, which Embree cuts up as it sees fit.
+void trace_streams(RTCScene scene, const ShadowRays& rays, const PointArrays& points,
+                   std::uint32_t first, std::uint32_t count, std::span<std::uint32_t> words);
 
 }  // namespace shadows::embree

@@ -108,13 +108,13 @@ void Device::create_device() {
     queue.queueFamilyIndex = family;
     queue.queueCount = 1;
     queue.pQueuePriorities = &priority;
-    FeatureChain features(info_.has_shader_clock);
+    FeatureChain features;
     features.require_all();
     const char* clock_extension = VK_KHR_SHADER_CLOCK_EXTENSION_NAME;
     VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features.core};
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
-    info.enabledExtensionCount = info_.has_shader_clock ? 1 : 0;
+    info.enabledExtensionCount = 1;
     info.ppEnabledExtensionNames = &clock_extension;
     check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
     vkGetDeviceQueue(device_, family, 0, &queue_);

@@ -18,6 +18,18 @@
 
 #define scalar_buffer(alignment) layout(buffer_reference, scalar, buffer_reference_align = alignment) buffer
 
+/// Whether a subgroup's lanes run in lockstep, as on a CPU device, where a control barrier would put
+/// the whole workgroup aside; set by gpu::Kernel.
+layout(constant_id = 100) const bool kLockstep = false;
+
+/// Lanes of this subgroup see what the others wrote before, to shared memory and to buffers.
+void subgroup_sync() {
+    if (kLockstep)
+        subgroupMemoryBarrier();
+    else
+        subgroupBarrier();
+}
+
 scalar_buffer(4) UintArray { uint at[]; };
 scalar_buffer(4) IntArray { int at[]; };
 scalar_buffer(4) FloatArray { float at[]; };

@@ -84,8 +84,8 @@ DeviceInfo describe(VkPhysicalDevice device) {
     if (properties.properties.limits.timestampComputeAndGraphics)
         info.timestamp_period_ns = properties.properties.limits.timestampPeriod;
     info.loop_limit = loop_limit(v12);
+    info.lockstep = v12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
     info.persistent_workgroups = persistent_workgroups(info.type);
-    info.has_shader_clock = has_extension(device, VK_KHR_SHADER_CLOCK_EXTENSION_NAME);
     info.has_ray_query = has_extension(device, VK_KHR_RAY_QUERY_EXTENSION_NAME);
 
     VkPhysicalDeviceMemoryProperties memory;
@@ -95,10 +95,9 @@ DeviceInfo describe(VkPhysicalDevice device) {
             info.memory_bytes =
                 std::max<std::uint64_t>(info.memory_bytes, memory.memoryHeaps[i].size);
 
-    FeatureChain features(info.has_shader_clock);
+    FeatureChain features(has_extension(device, VK_KHR_SHADER_CLOCK_EXTENSION_NAME));
     vkGetPhysicalDeviceFeatures2(device, &features.core);
     info.missing = features.missing();
-    info.has_shader_clock = info.has_shader_clock && features.clock.shaderDeviceClock;
     return info;
 }
 

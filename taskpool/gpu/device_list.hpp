@@ -22,11 +22,11 @@ struct DeviceInfo {
     std::uint32_t shared_memory_bytes = 0;   ///< per workgroup
     double timestamp_period_ns = 0;          ///< 0: no timestamps
     std::vector<std::string> missing;        ///< required features that it lacks; usable if empty
-    bool has_shader_clock = false;
     bool has_ray_query = false;
     /// Iterations after which the driver silently cuts a shader's loops, summed over one
     /// invocation; 0 if it does not. Mesa's llvmpipe before version 23 stops at 65,535.
     std::uint32_t loop_limit = 0;
+    bool lockstep = false;  ///< the lanes of a subgroup are one vector: Mesa's llvmpipe
     /// Workgroups of one subgroup that run at the same time and are worth keeping persistent.
     std::uint32_t persistent_workgroups = 1;
 

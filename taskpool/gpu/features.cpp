@@ -10,6 +10,9 @@ void for_each_required(Chain& f, const Visit& visit) {
     visit(f.core.features.shaderFloat64, "shaderFloat64");
     visit(f.core.features.geometryShader, "geometryShader (primitive id in fragment shaders)");
     visit(f.core.features.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
+    visit(f.core.features.depthClamp, "depthClamp");
+    visit(f.clock.shaderSubgroupClock, "shaderSubgroupClock");
+    visit(f.clock.shaderDeviceClock, "shaderDeviceClock");
     visit(f.v12.bufferDeviceAddress, "bufferDeviceAddress");
     visit(f.v12.scalarBlockLayout, "scalarBlockLayout");
     visit(f.v12.vulkanMemoryModel, "vulkanMemoryModel");
@@ -24,17 +27,15 @@ void for_each_required(Chain& f, const Visit& visit) {
 
 }  // namespace
 
-FeatureChain::FeatureChain(bool shader_clock) {
+FeatureChain::FeatureChain(bool has_shader_clock) {
     core.pNext = &v11;
     v11.pNext = &v12;
     v12.pNext = &v13;
-    v13.pNext = shader_clock ? &clock : nullptr;
+    v13.pNext = has_shader_clock ? &clock : nullptr;
 }
 
 void FeatureChain::require_all() {
     for_each_required(*this, [](VkBool32& flag, const char*) { flag = VK_TRUE; });
-    clock.shaderSubgroupClock = VK_TRUE;
-    clock.shaderDeviceClock = VK_TRUE;
 }
 
 std::vector<std::string> FeatureChain::missing() const {

@@ -17,8 +17,8 @@ struct FeatureChain {
     VkPhysicalDeviceShaderClockFeaturesKHR clock{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_CLOCK_FEATURES_KHR};
 
-    /// With `shader_clock` the (optional) clock feature is part of the chain.
-    explicit FeatureChain(bool shader_clock);
+    /// `has_shader_clock`: whether the device has the extension; without, its feature stays off.
+    explicit FeatureChain(bool has_shader_clock = true);
     FeatureChain(const FeatureChain&) = delete;
     FeatureChain& operator=(const FeatureChain&) = delete;
 

@@ -3,6 +3,12 @@
 #include <utility>
 
 namespace taskpool::gpu {
+namespace {
+
+/// kLockstep in device.glsl.
+constexpr std::uint32_t kLockstepConstant = 100;
+
+}  // namespace
 
 VkShaderModule create_module(Device& device, const Shader& shader) {
     std::optional<std::vector<std::uint32_t>> replacement;
@@ -20,7 +26,9 @@ Kernel::Kernel(Device& device, const Shader& shader, const std::vector<Constant>
     : device_(&device), name_(shader.path) {
     std::vector<std::uint32_t> values{device.subgroup_size()};
     std::vector<VkSpecializationMapEntry> entries{{0, 0, sizeof(std::uint32_t)}};
-    for (const Constant& constant : constants) {
+    std::vector<Constant> all{{kLockstepConstant, device.info().lockstep}};
+    all.insert(all.end(), constants.begin(), constants.end());
+    for (const Constant& constant : all) {
         entries.push_back({constant.id, std::uint32_t(values.size() * 4), sizeof(std::uint32_t)});
         values.push_back(constant.bits);
     }

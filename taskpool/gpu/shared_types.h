@@ -7,6 +7,8 @@
 
 namespace taskpool::gpu::shared_types {
 using uint = std::uint32_t;
+using std::uint64_t;
+using glm::dvec3;
 using glm::ivec2;
 using glm::ivec3;
 using glm::ivec4;

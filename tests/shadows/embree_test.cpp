@@ -46,7 +46,7 @@ class EmbreeWidth : public tests::GpuTest, public testing::WithParamInterface<st
         return points.valid_count() > 0 ? double(close) / points.valid_count() : 0;
     }
 };
-INSTANTIATE_TEST_SUITE_P(Shadows, EmbreeWidth, testing::Values(0, 1, 8, 16));
+INSTANTIATE_TEST_SUITE_P(Shadows, EmbreeWidth, testing::Values(0, 1, 8, 16, 64));
 
 TEST_P(EmbreeWidth, AgreesWithBruteForceOnTriangleSoup) {
     for (const std::uint32_t seed : {1u, 2u, 3u})

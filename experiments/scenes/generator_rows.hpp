@@ -1,0 +1,16 @@
+// The generators one by one; generators.cpp lists them.
+#pragma once
+
+#include "experiments/scenes/generators.hpp"
+
+namespace experiments::scenes {
+
+/// The largest mesh a generator may be asked for.
+inline constexpr double kMaxTriangles = 2e8;
+
+GeneratorRow spheres();
+GeneratorRow city();
+GeneratorRow pipes();
+GeneratorRow hairball();
+
+}  // namespace experiments::scenes

@@ -1,0 +1,15 @@
+// The list of generators.
+#include "experiments/scenes/generators.hpp"
+
+#include <array>
+
+#include "experiments/scenes/generator_rows.hpp"
+
+namespace experiments::scenes {
+
+std::span<const GeneratorRow> generators() {
+    static const std::array<GeneratorRow, 4> rows = {spheres(), city(), pipes(), hairball()};
+    return rows;
+}
+
+}  // namespace experiments::scenes

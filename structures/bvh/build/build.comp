@@ -1,0 +1,112 @@
+// Top-down BVH build on the task pool: binned SAH or spatial median, then full SAH over ranges that
+// fit a subgroup (Vinkler, Bittner and Havran 2013, section 4.1).
+//
+// Departures from the paper: planes lie in bins over the bounds of the primitives' centres; children
+// are numbered by where their range is split, so nodes need no atomic counter; where a primitive
+// lands depends on nothing but the input. Equal inputs give equal trees, bit for bit, whatever the
+// number of subgroups and the policy; and on every device if kLeafRange is the same.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "taskpool/pool/pool_types.glsl"
+#include "structures/bvh/build/build_shared.h"
+#include "structures/bvh/bvh_shared.h"
+#include "structures/bvh/build/keys.glsl"
+
+/// Ranges of at most this many primitives go to full SAH; at most the subgroup size.
+layout(constant_id = 22) const uint kLeafRange = 8;
+layout(constant_id = 23) const bool kSpatialMedian = false;
+layout(constant_id = 24) const uint kMaxDepth = 64;
+
+const uint kNoPrimitive = 0xffffffffu;
+const uint kRuleBin = 0;     // up to bin `plane` of `axis` goes left
+const uint kRuleMiddle = 1;  // below the middle of the centres' bounds on `axis` goes left
+const uint kRuleHalve = 2;   // the first half goes left
+
+struct Task {
+    uint first, count;
+    uint node, depth;
+    uint side;  // which half of the primitive buffer holds the range
+    KeyBox box;
+    vec3 center_lower, center_upper;  // bounds of lower + upper of the primitives' boxes
+    uint rule, axis, plane;
+    uint left_count;
+    KeyBox left_box, left_centers, right_box, right_centers;
+};
+
+pool_buffer(4) Primitives { Primitive at[]; };
+pool_buffer(4) Nodes { BvhNode at[]; };
+pool_buffer(4) Scratch { uint words[]; };
+pool_buffer(8) Input { BuildInput data; };
+
+struct Client {
+    Primitives primitives[2];
+    Nodes nodes;
+    PoolUints order;
+    Scratch scratch;  // of large tasks, then two words per chunk for chunk counts
+    Input mesh;
+};
+
+#include "taskpool/pool/pool.glsl"
+
+Primitive load_primitive(uint side, uint place) {
+    Primitive primitive;
+    if (side == 0) primitive = pool.client.primitives[0].at[place];
+    else primitive = pool.client.primitives[1].at[place];
+    return primitive;
+}
+void store_primitive(uint side, uint place, Primitive primitive) {
+    if (side == 0) pool.client.primitives[0].at[place] = primitive;
+    else pool.client.primitives[1].at[place] = primitive;
+}
+
+/// Bits [from, to) of a ballot that are set.
+uint bits_between(uvec4 ballot, uint from, uint to) {
+    const uint64_t bits = packUint2x32(ballot.xy);
+    const uint64_t mask = (to >= 64 ? ~0ul : (1ul << to) - 1) & ~((1ul << from) - 1);
+    const uvec2 kept = unpackUint2x32(bits & mask);
+    return uint(bitCount(kept.x) + bitCount(kept.y));
+}
+
+#include "structures/bvh/build/bins.glsl"
+#include "structures/bvh/build/scratch.glsl"
+#include "structures/bvh/build/setup.glsl"
+#include "structures/bvh/build/leaves.glsl"
+#include "structures/bvh/build/partition.glsl"
+#include "structures/bvh/build/transitions.glsl"
+
+void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
+    const uint begin = task.first + chunk * kChunkPrimitives;
+    const uint end = min(begin + kChunkPrimitives, task.first + task.count);
+    switch (phase) {
+        case kPhaseSetup: setup_chunk(begin, end); break;
+        case kPhaseCompact: compact_chunk(begin, end); break;
+        case kPhaseBin: bin_chunk(task, begin, end); break;
+        case kPhaseCount: count_chunk(task, begin, end); break;
+        case kPhasePartition: partition_chunk(task, begin, end); break;
+        case kPhaseSmall: small_task(task); break;
+        case kPhaseLeaves: build_leaves(task); break;
+    }
+}
+
+Next finish_step(inout Task task, uint phase, uint step) {
+    switch (phase) {
+        case kPhaseSetup: return after_setup(task);
+        case kPhaseCompact: return after_compact(task);
+        case kPhaseBin: return after_bin(task);
+        case kPhaseCount: return after_count(task);
+        case kPhasePartition: return after_partition(task);
+        case kPhaseSmall: return split_task(task);
+    }
+    pool_progress(task.count);
+    return next_end();
+}
+
+Task spawn_child(Task parent, uint child, out Start start) {
+    const Task task = child_of(parent, child);
+    const Next first = first_step(task);
+    start = Start(first.phase, first.step, first.chunks, 0);
+    return task;
+}
+
+void spawned(Task parent, uint child, uint slot) {}
+void end_task(Task task) {}

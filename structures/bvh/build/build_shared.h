@@ -1,0 +1,54 @@
+// What the BVH build on the task pool (build.comp) and its host side (bvh.cpp) both know.
+#ifndef STRUCTURES_BVH_BUILD_SHARED_H
+#define STRUCTURES_BVH_BUILD_SHARED_H
+
+#include "taskpool/gpu/shared_types.h"
+
+#ifdef __cplusplus
+#include <cstddef>
+namespace structures::bvh {
+using namespace taskpool::gpu::shared_types;
+#define BVH_CONSTANT constexpr
+#else
+#define BVH_CONSTANT const
+#endif
+
+// Phases of a task, in the order a task may run through them.
+BVH_CONSTANT uint kPhaseSetup = 0;      // boxes of the triangles, scene bounds, degenerate ones
+BVH_CONSTANT uint kPhaseCompact = 1;    // closes the gaps that degenerate triangles left
+BVH_CONSTANT uint kPhaseBin = 2;        // bins a large range (binned SAH only)
+BVH_CONSTANT uint kPhaseCount = 3;      // per chunk, how many primitives go left
+BVH_CONSTANT uint kPhasePartition = 4;  // moves them
+BVH_CONSTANT uint kPhaseSmall = 5;      // bins and partitions a range of one chunk
+BVH_CONSTANT uint kPhaseLeaves = 6;     // full SAH over a range that fits a subgroup
+
+BVH_CONSTANT uint kChunkPrimitives = 1024;  // in a chunk, and in a small task at most
+BVH_CONSTANT uint kKeys = 6;                // of a box: see keys_of() in keys.glsl
+
+// A primitive on its way down: its box and its id in the mesh.
+struct Primitive {
+    vec3 lower;
+    uint id;
+    vec3 upper;
+    uint padding;
+};
+
+// The mesh.
+struct BuildInput {
+#ifdef __cplusplus
+    std::uint64_t positions, triangles;
+#else
+    Vec3Array positions;
+    Uvec3Array triangles;
+#endif
+    uint triangle_count;
+    uint padding;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(Primitive) == 32);
+static_assert(sizeof(BuildInput) == 24);
+}  // namespace structures::bvh
+#endif
+#undef BVH_CONSTANT
+#endif

@@ -1,0 +1,104 @@
+// What follows upon a step: the life of a task, phase by phase.
+
+uint chunks_of(uint count) { return (count + kChunkPrimitives - 1) / kChunkPrimitives; }
+
+/// The first step of a task that has its range and bounds; its rule is set by child_of().
+Next first_step(Task task) {
+    if (task.count <= kLeafRange) return next_step(kPhaseLeaves, 0, 1);
+    if (task.count <= kChunkPrimitives) return next_step(kPhaseSmall, 0, 1);
+    return next_step(task.rule == kRuleBin ? kPhaseBin : kPhaseCount, 0, chunks_of(task.count));
+}
+
+/// Rule of a fresh task. Halving bounds the depth: once only halving can still finish above kMaxDepth.
+void set_rule(inout Task task) {
+    precise vec3 extent = task.center_upper - task.center_lower;
+    const uint halvings = uint(findMSB(max(task.count, 1u))) + 1;
+    task.rule = kSpatialMedian ? kRuleMiddle : kRuleBin;
+    if (task.depth + halvings >= kMaxDepth || extent == vec3(0)) task.rule = kRuleHalve;
+    task.axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+}
+
+/// The root's bounds have been gathered in scratch 0; goes on with its first step.
+Next start_root(inout Task task) {
+    fetch_rows(0, 2 * kKeys);
+    task.box = reduced(0);
+    const KeyBox centers = reduced(kKeys);
+    if (task.count == 0) {
+        if (subgroupElect())
+            pool.client.nodes.at[0] = BvhNode(vec3(kInfinity), 0, vec3(-kInfinity), 0);
+        return next_end();
+    }
+    task.center_lower = lower_of(centers);
+    task.center_upper = upper_of(centers);
+    set_rule(task);
+    clear_scratch(0);
+    return first_step(task);
+}
+
+Next after_setup(inout Task task) {
+    const uint all = task.count;
+    const uint valid = scan_chunks(0, all);
+    task.left_count = valid;
+    if (valid < all) return next_step(kPhaseCompact, 0, valid == 0 ? 0 : chunks_of(all));
+    return start_root(task);
+}
+
+Next after_compact(inout Task task) {
+    task.count = task.left_count;
+    task.side = 1;
+    return start_root(task);
+}
+
+Next after_bin(inout Task task) {
+    for (uint i = gl_SubgroupInvocationID; i < kAllBinWords; i += gl_SubgroupSize)
+        bins[i] = pool.client.scratch.words[scratch_word(task.first) + i];
+    subgroup_sync();
+    choose(task, best_plane());
+    return next_step(kPhaseCount, 0, chunks_of(task.count));
+}
+
+Next after_count(inout Task task) {
+    task.left_count = scan_chunks(task.first, task.count);
+    if (task.left_count == 0 || task.left_count == task.count) {
+        // The middle of the centres separated nothing.
+        task.rule = kRuleHalve;
+        return next_step(kPhaseCount, 1, chunks_of(task.count));
+    }
+    return next_step(kPhasePartition, 0, chunks_of(task.count));
+}
+
+/// Writes the task's inner node and spawns its children.
+Next split_task(inout Task task) {
+    if (subgroupElect())
+        pool.client.nodes.at[task.node] =
+            BvhNode(lower_of(task.box), 2 * (task.first + task.left_count) - 1, upper_of(task.box), 0);
+    return next_spawn(2);
+}
+
+Next after_partition(inout Task task) {
+    fetch_rows(task.first, 4 * kKeys);
+    take_children(task);
+    return split_task(task);
+}
+
+Task child_of(Task parent, uint child) {
+    Task task;
+    task.first = parent.first + (child == 0 ? 0 : parent.left_count);
+    task.count = child == 0 ? parent.left_count : parent.count - parent.left_count;
+    task.node = 2 * (parent.first + parent.left_count) - 1 + child;
+    task.depth = parent.depth + 1;
+    task.side = 1 - parent.side;
+    task.box = parent.left_box;
+    KeyBox centers = parent.left_centers;
+    if (child == 1) {
+        task.box = parent.right_box;
+        centers = parent.right_centers;
+    }
+    task.center_lower = lower_of(centers);
+    task.center_upper = upper_of(centers);
+    task.plane = 0;
+    task.left_count = 0;
+    set_rule(task);
+    if (task.count > kChunkPrimitives) clear_scratch(task.first);
+    return task;
+}
