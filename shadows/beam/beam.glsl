@@ -6,7 +6,7 @@
 //     uint beam_primitive(uint point) { ... }
 //     void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint primitive) {...}
 //     void beam_walk() { ... beam_meets_box(...); beam_test_triangles(...); }
-//     void main() { beam_light = ...; TileAnswer answer = answer_tile(tile, origin); ... }
+//     void main() { beam_light = ...; TileAnswer answer = answer_tile(tile, origin, size); ... }
 //
 // A tile's points fall into groups (group.glsl): similar directions from the light. The structure's
 // walk finds triangles that may occlude a group; those are culled against the beam, then tested
@@ -45,6 +45,7 @@ struct TileAnswer {
 
 // State of the tile under way; uniform over the subgroup except for the masks.
 uint beam_tile;
+uint beam_primitives;  // which hashes the primitives of its points have
 uint beam_group;     // slots of the group
 uint beam_occluded;  // slots found occluded, of any group
 uint beam_steps;     // loop iterations so far
@@ -57,6 +58,8 @@ uint beam_group_triangles;  // tested by this group
 bool beam_finished;  // every point of the group is occluded
 
 bool group_finished() { return beam_finished; }
+
+uint primitive_bit(uint primitive) { return 1u << (primitive * 2654435761u >> 27); }
 
 // Limits the walk; false once the steps are used up.
 bool beam_step(uint count) {
@@ -81,12 +84,12 @@ void test_exactly(uint index, uint slots) {
     vec3 a, b, c;
     uint primitive;
     beam_triangle(index, a, b, c, primitive);
-    // Neither the receiver itself, nor directions outside of the triangle's own rectangle: bounds on
-    // the edge functions grow with the beam and are poor for triangles much smaller than it.
+    // Not in directions outside of the triangle's own rectangle: bounds on the edge functions grow
+    // with the beam and are poor for triangles much smaller than it.
     vec2 lower, upper;
     footprint(a, b, c, lower, upper);
     [[unroll]] for (uint k = 0; k < kSlots; ++k) {
-        if (point_primitive[k] == primitive || point_u[k] < lower.x || point_u[k] > upper.x ||
+        if (point_u[k] < lower.x || point_u[k] > upper.x ||
             point_v[k] < lower.y || point_v[k] > upper.y)
             slots &= ~(1u << k);
     }
@@ -116,6 +119,9 @@ void beam_test_triangles(uint index, bool used) {
         uint primitive;
         beam_triangle(index, a, b, c, primitive);
         verdict = classify(a, b, c, mine);
+        const bool receives = (primitive_bit(primitive) & beam_primitives) != 0;
+        mine.receiver = receives ? primitive : kNoPrimitive;
+        if (verdict == kCovers && receives) verdict = kMeets;
     }
     if (subgroupAny(verdict == kCovers)) {
         beam_occluded |= beam_group;
@@ -151,18 +157,21 @@ void beam_test_triangles(uint index, bool used) {
     beam_finished = !subgroupAny((beam_group & ~beam_occluded) != 0);
 }
 
-// Answers one tile. `origin` is the light, or, for a directional light, a point near the scene.
-TileAnswer answer_tile(uint tile, vec3 origin) {
+// Answers one tile. `origin` is the light, or, for a directional light, a point near the scene;
+// `size` is the order of distances from there.
+TileAnswer answer_tile(uint tile, vec3 origin, float size) {
     beam_tile = tile;
     beam_origin = origin;
+    beam_scale = scale_for(size);
     beam_occluded = beam_steps = beam_nodes = beam_triangles = beam_exact_tests = 0;
     TileAnswer answer = TileAnswer(0, 0, 0, 0, 0);
-    uint todo = 0;
+    uint todo = 0, primitives = 0;
     [[unroll]] for (uint k = 0; k < kSlots; ++k) {
         const uint point = tile_point(tile, k);
         point_primitive[k] = beam_primitive(point);
-        point_d[k] = beam_point(point) - origin;
+        point_d[k] = (beam_point(point) - origin) * beam_scale;
         if (point_primitive[k] != kNoPrimitive) {
+            primitives |= primitive_bit(point_primitive[k]);
             const vec3 size = abs(point_d[k]);
             if (kDirectional || max(max(size.x, size.y), size.z) > kTinyDistance)
                 todo |= 1u << k;
@@ -170,6 +179,7 @@ TileAnswer answer_tile(uint tile, vec3 origin) {
                 answer.deferred |= 1u << k;
         }
     }
+    beam_primitives = subgroupOr(primitives);
     float limit = kHuge;  // length of a group's sides
     beam_halvings = 0;
     // Guarded: drivers may run the body of a loop that has nothing to do.

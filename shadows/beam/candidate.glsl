@@ -26,6 +26,7 @@ struct Candidate {
     vec3 edge_ab, edge_bc, edge_ca;  // factors of u, v, 1
     vec4 plane;                      // factors of u, v, k, 1
     uint sections;                   // those with points that it may hit
+    uint receiver;                   // its primitive if points of the tile may lie on it
 };
 
 const uint kMiss = 0u, kMeets = 1u, kCovers = 2u;
@@ -33,6 +34,8 @@ const float kEdgeError = 2.0 * 16.0 / 16777216.0;
 const float kPlaneError = 2.0 * 16.0 / 16777216.0;
 
 float norm1(vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
+
+vec3 from_world(vec3 p) { return to_beam((p - beam_origin) * beam_scale); }
 
 // Largest distance across of a corner from the beam's directions; see X above.
 float spread(vec3 r, vec2 centre, vec2 half_size) {
@@ -76,8 +79,7 @@ float most_of(vec3 f, uint section) {
 // Rectangle of u and v that holds every point the triangle may occlude, corners off by the bound
 // above; the whole plane if a corner is not in front of the light.
 void footprint(vec3 a, vec3 b, vec3 c, out vec2 lower, out vec2 upper) {
-    const vec3 ra = to_beam(a - beam_origin), rb = to_beam(b - beam_origin),
-               rc = to_beam(c - beam_origin);
+    const vec3 ra = from_world(a), rb = from_world(b), rc = from_world(c);
     const float slack = kEdgeError * (max(max(norm1(ra), norm1(rb)), norm1(rc)) + beam.reach);
     vec2 qa, qb, qc, margin;
     if (kDirectional) {
@@ -104,9 +106,9 @@ void footprint(vec3 a, vec3 b, vec3 c, out vec2 lower, out vec2 upper) {
 // What the triangle is to the whole beam: kMiss, kMeets, or kCovers if it certainly occludes all
 // points.
 uint classify(vec3 a, vec3 b, vec3 c, out Candidate candidate) {
-    const vec3 ra = to_beam(a - beam_origin), rb = to_beam(b - beam_origin),
-               rc = to_beam(c - beam_origin);
-    const vec3 ab = to_beam(b - a), bc = to_beam(c - b), ca = to_beam(a - c);
+    const vec3 ra = from_world(a), rb = from_world(b), rc = from_world(c);
+    const vec3 ab = to_beam((b - a) * beam_scale), bc = to_beam((c - b) * beam_scale),
+               ca = to_beam((a - c) * beam_scale);
     const float la = norm1(ra), lb = norm1(rb), lc = norm1(rc);
     const float sa = la + beam.reach, sb = lb + beam.reach, sc = lc + beam.reach;
 
@@ -162,6 +164,7 @@ uint classify(vec3 a, vec3 b, vec3 c, out Candidate candidate) {
                ca_range = range_of(candidate.edge_ca);
     const vec3 edge_least = vec3(ab_range.x, bc_range.x, ca_range.x);
     const vec3 edge_most = vec3(ab_range.y, bc_range.y, ca_range.y);
+    bool covers = false;
     const bool certain_side = abs(facing) > facing_error;
     if (certain_side) {
         // The plane's function over the box of the points: normal . d - w, or in u, v, z.
@@ -172,7 +175,7 @@ uint classify(vec3 a, vec3 b, vec3 c, out Candidate candidate) {
         const float plane_most = high.x + high.y + high.z + constant;
         const float plane_least = low.x + low.y + low.z + constant;
         if (any(lessThan(edge_most, -error)) || plane_most < -plane_error) return kMiss;
-        if (all(greaterThan(edge_least, error)) && plane_least > plane_error) return kCovers;
+        covers = all(greaterThan(edge_least, error)) && plane_least > plane_error;
         candidate.sections = 0;
         [[unroll]] for (uint s = 0; s < kSections; ++s) {
             if (!(most_of(candidate.edge_ab, s) < -error.x || most_of(candidate.edge_bc, s) < -error.y ||
@@ -194,7 +197,7 @@ uint classify(vec3 a, vec3 b, vec3 c, out Candidate candidate) {
     candidate.edge_bc *= certainty(error.y);
     candidate.edge_ca *= certainty(error.z);
     candidate.plane = plane;
-    return kMeets;
+    return covers ? kCovers : kMeets;
 }
 
 Candidate broadcast(Candidate candidate, uint from) {
@@ -203,10 +206,12 @@ Candidate broadcast(Candidate candidate, uint from) {
     candidate.edge_ca = subgroupShuffle(candidate.edge_ca, from);
     candidate.plane = subgroupShuffle(candidate.plane, from);
     candidate.sections = subgroupShuffle(candidate.sections, from);
+    candidate.receiver = subgroupShuffle(candidate.receiver, from);
     return candidate;
 }
 
-// Slots that the candidate certainly hits, and those where it may.
+// Slots that the candidate certainly hits, and those where it may. A primitive hits none of its own
+// points, however far rounding has moved them off it.
 void test_points(Candidate c, out uint hit, out uint doubtful) {
     hit = 0;
     doubtful = 0;
@@ -226,6 +231,13 @@ void test_points(Candidate c, out uint hit, out uint doubtful) {
         }
     }
     doubtful &= ~hit;
+    if (c.receiver != kNoPrimitive) {
+        uint own = 0;
+        [[unroll]] for (uint k = 0; k < kSlots; ++k)
+            own |= point_primitive[k] == c.receiver ? 1u << k : 0u;
+        hit &= ~own;
+        doubtful &= ~own;
+    }
 }
 
 #endif

@@ -6,15 +6,24 @@
 //   point light        u = x / z,          v = y / z,          depth key k = 1 / z
 //   directional light  u = x - z tx / tz,  v = y - z ty / tz,  depth key k = z
 // where t points towards the light. Either way a segment to the light keeps its u and v, and
-// occluders of a point have the larger k. A plane is a linear function of u, v, k.
+// occluders of a point have the larger k. A plane is a linear function of u, v, k. Lengths are
+// scaled by `beam_scale`, a power of two, to the order of 1: products of three neither overflow nor
+// vanish, whatever the scene's unit.
 #ifndef SHADOWS_BEAM_GROUP_GLSL
 #define SHADOWS_BEAM_GROUP_GLSL
 
-vec3 point_d[kSlots];   // relative to beam_origin, axes as in the world
+vec3 point_d[kSlots];   // relative to beam_origin, scaled, axes as in the world
 float point_u[kSlots], point_v[kSlots], point_k[kSlots];
 uint point_primitive[kSlots];
 
 vec3 beam_origin;
+float beam_scale;
+
+// The power of two that takes `size` to between 1 and 2.
+float scale_for(float size) {
+    const uint exponent = clamp(floatBitsToUint(size) >> 23 & 0xffu, 1u, 253u);
+    return uintBitsToFloat((254u - exponent) << 23);
+}
 
 // The tile's points in runs of 32 or more, each with its own rectangle of u and v: small triangles
 // are tested against the runs that they can meet.
@@ -37,6 +46,7 @@ struct Beam {
 };
 Beam beam;
 
+// From the world's axes to the beam's.
 vec3 to_beam(vec3 v) {
     vec3 permuted = beam.axis == 0 ? v.yzx : beam.axis == 1 ? v.zxy : v;
     permuted.z *= beam.mirror;

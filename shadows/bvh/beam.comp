@@ -16,12 +16,14 @@ void main() {
     beam_light = push.light;
     const WideHeader header = push.header.header;
     const vec3 origin = kDirectional ? 0.5 * header.origin + 0.5 * header.upper : push.light;
+    const vec3 farthest = max(abs(header.upper - origin), abs(header.origin - origin));
+    const float size = max(max(farthest.x, farthest.y), farthest.z);
     uint taken = 0, finished = 0, ends[4] = uint[4](0, 0, 0, 0);
     uint exact_tests = 0, groups = 0;
     while (true) {
         const uint tile = next_tile(taken);
         if (tile == kNoTile) break;
-        const TileAnswer answer = answer_tile(tile, origin);
+        const TileAnswer answer = answer_tile(tile, origin, size);
         store_tile(push.visible, tile, ~answer.occluded);
         defer(tile, answer.deferred);
         finished += answer.ends == 0 ? 1 : 0;

@@ -74,8 +74,7 @@ double BvhMethod::build_binary() {
                   : build_ == "spatial_median" ? structures::bvh::SplitRule::spatial_median
                                                : structures::bvh::SplitRule::sweep_sah;
     const structures::bvh::Tree tree = structures::bvh::build_reference(*mesh_, config);
-    const std::chrono::duration<double, std::milli> time =
-        std::chrono::steady_clock::now() - begin;
+    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
     nodes_ = taskpool::gpu::make_buffer<structures::bvh::BvhNode>(device_, tree.nodes, "nodes");
     order_ = taskpool::gpu::make_buffer<std::uint32_t>(device_, tree.order, "order");
     node_count_ = static_cast<std::uint32_t>(tree.nodes.size());
@@ -103,10 +102,10 @@ Samples BvhMethod::build(const Light& light) {
         device_.run(recorder);
         milliseconds += times_.milliseconds("begin", "end");
     }
-    return {{"build_ms", milliseconds, "ms"},
-            {"memory_bytes", double(structures::bvh::wide::WideBuilder::tree_bytes(capacity)),
-             "bytes"},
-            {"nodes", double(wide_.header().node_count)}};
+    return {
+        {"build_ms", milliseconds, "ms"},
+        {"memory_bytes", double(structures::bvh::wide::WideBuilder::tree_bytes(capacity)), "bytes"},
+        {"nodes", double(wide_.header().node_count)}};
 }
 
 Samples BvhMethod::query(const Points& points, Visibility& visible) {

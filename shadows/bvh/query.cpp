@@ -32,9 +32,12 @@ Launch launch(const taskpool::gpu::DeviceInfo& info, std::uint32_t tiles) {
 
 const char* shader_of(QueryKind kind) {
     switch (kind) {
-        case QueryKind::lane: return "shadows/bvh/lane.comp";
-        case QueryKind::packet: return "shadows/bvh/packet.comp";
-        default: return "shadows/bvh/beam.comp";
+        case QueryKind::lane:
+            return "shadows/bvh/lane.comp";
+        case QueryKind::packet:
+            return "shadows/bvh/packet.comp";
+        default:
+            return "shadows/bvh/beam.comp";
     }
 }
 
@@ -42,6 +45,8 @@ const char* shader_of(QueryKind kind) {
 
 Query::Query(taskpool::gpu::Device& device, const QueryConfig& config)
     : device_(device), config_(config) {
+    // Every lane may append a whole leaf before the list is looked at.
+    config_.list = std::max(config_.list, 8 * device.subgroup_size());
     // A traversal that a driver would cut must end before, on its own account.
     if (const std::uint32_t limit = device.info().loop_limit; limit > 0) {
         config_.steps = std::min(config_.steps, limit / 4);
@@ -92,12 +97,11 @@ const Query::Kernels& Query::kernels(bool directional) {
     return found;
 }
 
-void Query::record(taskpool::gpu::Recorder& recorder,
-                   const structures::bvh::wide::WideTree& tree, std::uint64_t points,
-                   std::uint32_t point_count, const Light& light) {
+void Query::record(taskpool::gpu::Recorder& recorder, const structures::bvh::wide::WideTree& tree,
+                   std::uint64_t points, std::uint32_t point_count, const Light& light) {
     if (point_count > point_count_)
-        throw std::invalid_argument(fmt::format("Query::record: {} points, prepared for {}",
-                                                point_count, point_count_));
+        throw std::invalid_argument(
+            fmt::format("Query::record: {} points, prepared for {}", point_count, point_count_));
     const bool directional = light.type == Light::Type::directional;
     const Kernels& pair = kernels(directional);
     const QueryPush push{points,
@@ -113,6 +117,7 @@ void Query::record(taskpool::gpu::Recorder& recorder,
                          directional ? -light.vector : light.vector,
                          point_count};
     recorder.fill(status_, 0);
+    recorder.barrier();
     // The counter of deferred tiles is the x of an indirect dispatch (x, 1, 1).
     recorder.fill(status_, 1, kDeferredOffset + 4, 8);
     recorder.barrier();
@@ -129,9 +134,7 @@ Visibility Query::visibility() const {
     return {taskpool::gpu::read<std::uint32_t>(visible_, point_count_ / 32)};
 }
 
-QueryStatus Query::status() const {
-    return taskpool::gpu::read<QueryStatus>(status_, 1).front();
-}
+QueryStatus Query::status() const { return taskpool::gpu::read<QueryStatus>(status_, 1).front(); }
 
 std::vector<PointCost> Query::costs() const {
     if (!config_.statistics) return {};

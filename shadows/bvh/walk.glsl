@@ -13,10 +13,10 @@ struct BeamGrid {
 };
 
 BeamGrid beam_grid() {
-    const Grid grid = grid_from(push.header.header, beam_origin, beam.reach);
+    const Grid grid = grid_from(push.header.header, beam_origin, beam.reach / beam_scale);
     BeamGrid g;
-    const vec3 p = to_beam(grid.base_lower), q = to_beam(grid.base_upper);
-    g.cell = to_beam(grid.cell);
+    const vec3 p = to_beam(grid.base_lower * beam_scale), q = to_beam(grid.base_upper * beam_scale);
+    g.cell = to_beam(grid.cell * beam_scale);
     // Mirrored, the upper bound's base is the lower one.
     g.lower = vec3(p.xy, beam.mirror > 0 ? p.z : q.z);
     g.upper = vec3(q.xy, beam.mirror > 0 ? q.z : p.z);

@@ -90,8 +90,7 @@ struct Walk {
                     const std::uint32_t first = child.link & kLeafFirstMask;
                     const std::uint32_t count = (child.link & ~kLeafBit) >> kLeafCountShift;
                     for (std::uint32_t t = first; t < first + count; ++t)
-                        for (const glm::vec3& p :
-                             {triangles[t].a, triangles[t].b, triangles[t].c})
+                        for (const glm::vec3& p : {triangles[t].a, triangles[t].b, triangles[t].c})
                             inside.grow(p);
                 } else {
                     if (child.link <= node) {

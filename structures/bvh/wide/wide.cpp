@@ -78,9 +78,15 @@ void WideBuilder::prepare(const Capacity& capacity) {
 
 void WideBuilder::record(Recorder& recorder, const BinaryTree& binary) {
     order_count_ = binary.order_count;
-    const BuildPush push{binary.nodes,     nodes_.address(),  header_.address(), items_.address(),
-                         levels_.address(), chunks_.address(), 0};
+    const BuildPush push{binary.nodes,
+                         nodes_.address(),
+                         header_.address(),
+                         items_.address(),
+                         levels_.address(),
+                         chunks_.address(),
+                         0};
     recorder.dispatch(begin_, push, 1);
+    recorder.barrier();
     if (binary.order_count > 0)
         recorder.dispatch(
             gather_,
@@ -98,8 +104,13 @@ void WideBuilder::record_rest(Recorder& recorder, const BinaryTree& binary) {
 }
 
 void WideBuilder::record_levels(Recorder& recorder, const BinaryTree& binary) {
-    BuildPush push{binary.nodes,     nodes_.address(),  header_.address(), items_.address(),
-                   levels_.address(), chunks_.address(), 0};
+    BuildPush push{binary.nodes,
+                   nodes_.address(),
+                   header_.address(),
+                   items_.address(),
+                   levels_.address(),
+                   chunks_.address(),
+                   0};
     for (push.level = 0; push.level < kLevels; ++push.level) {
         const std::size_t groups = push.level * sizeof(WideLevel);
         recorder.dispatch_indirect(open_, push, levels_, groups);
