@@ -64,6 +64,13 @@ void check(Session& session, const std::string& place, Contestant& contestant) {
     });
 }
 
+void save_trace(Session& session, const std::string& place, Contestant& contestant) {
+    const std::string trace = contestant.builder->trace();
+    if (trace.empty()) return;
+    std::filesystem::create_directories(session.folder.traces());
+    write_text(session.folder.traces() / (file_name(place) + ".json"), trace);
+}
+
 void run_scene(Session& session, const config::Scene& scene) {
     session.step(scene.name + ": loading");
     --session.steps_done;
@@ -92,7 +99,10 @@ void run_scene(Session& session, const config::Scene& scene) {
         }
     }
     for (Contestant& contestant : contestants)
-        if (contestant.builder) check(session, place(contestant), contestant);
+        if (contestant.builder) {
+            check(session, place(contestant), contestant);
+            save_trace(session, place(contestant), contestant);
+        }
     // A scene with a failure stays open, so that --resume tries it again.
     if (session.failures.size() != failures) return;
     session.samples.append({scene.name, kSceneRows, "", 0, 0},

@@ -12,15 +12,6 @@ namespace {
 
 using image::Image;
 
-/// A file name from any label: other characters become '_', and a long or changed name is told
-/// apart by the start of its hash.
-std::string file_name(const std::string& label) {
-    std::string name = label.substr(0, 80);
-    for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
-    return name == label ? name : name + "-" + sha256(label).substr(0, 6);
-}
-
 /// `value(point)` of every pixel, in rows.
 template <typename Function>
 Image per_pixel(const shadows::Points& points, int channels, const Function& value) {

@@ -87,6 +87,13 @@ nlohmann::json read_json(const fs::path& path) {
     }
 }
 
+std::string file_name(const std::string& label) {
+    std::string name = label.substr(0, 80);
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+    return name == label ? name : name + "-" + sha256(label).substr(0, 6);
+}
+
 fs::path fresh_folder(const std::string& name) {
     const std::string stamp =
         fmt::format("{}-{:%Y%m%dT%H%M%SZ}", name, fmt::gmtime(std::time(nullptr)));

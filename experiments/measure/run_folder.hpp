@@ -17,12 +17,17 @@ struct RunFolder {
 
     std::filesystem::path samples() const { return path / "samples.csv"; }
     std::filesystem::path images() const { return path / "images"; }
+    std::filesystem::path traces() const { return path / "traces"; }
 };
 
 /// Writes the whole file, or leaves the old one. Throws OutputError.
 void write_text(const std::filesystem::path& path, const std::string& text);
 /// Throws std::runtime_error naming the file if it cannot be read or is no JSON.
 nlohmann::json read_json(const std::filesystem::path& path);
+
+/// A file name from any label: other characters become '_', and a long or changed name is told
+/// apart by the start of its hash.
+std::string file_name(const std::string& label);
 
 /// runs/<name>-<UTC time> below the working directory, not taken yet.
 std::filesystem::path fresh_folder(const std::string& name);

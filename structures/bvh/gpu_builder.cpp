@@ -89,22 +89,18 @@ void GpuBuilder::prepare(const geometry::TriangleMesh& mesh) {
 
 Samples GpuBuilder::metrics() {
     const taskpool::pool::PoolStatus& status = build_.status();
-    Samples samples = to_samples(measure(
-        *mesh_, build_.read_back(), {.costs = build_.config().costs, .epo = measure_epo_}));
+    Samples samples = to_samples(
+        measure(*mesh_, build_.read_back(), {.costs = build_.config().costs, .epo = measure_epo_}));
     if (!measure_epo_) std::erase_if(samples, [](const Sample& s) { return s.metric == "epo"; });
-    const auto add = [&](const char* metric, double value, const char* unit = "1") {
-        samples.push_back({metric, value, unit});
-    };
+    const auto add = [&](const char* metric, double value) { samples.push_back({metric, value}); };
     add("degenerate", double(build_.triangle_count() - status.state.progress));
     add("tasks", double(status.state.spawned) + 1);
-    add("launches", status.launches);
     add("pool_peak", status.state.peak_live);
     add("pool_chunks", status.state.chunks);
     add("pool_claims", status.state.claims);
     add("pool_failed_claims", status.state.failed_claims);
     add("pool_polls", status.state.polls);
     add("pool_growths", status.growths);
-    add("memory_bytes", double(build_.required_bytes(build_.triangle_count())), "bytes");
     return samples;
 }
 
