@@ -18,10 +18,10 @@ void main() {
             if (primitive != kNoPrimitive) {
                 if (bvh_occluded(view, segment_of(point), primitive, walk)) occluded |= 1u << k;
                 if (walk.end != kEndFinished) deferred |= 1u << k;
-                steps = steps_after(walk.steps);
                 stack_full += walk.end == kEndStackFull ? 1 : 0;
                 step_limit += walk.end == kEndStepLimit ? 1 : 0;
             }
+            steps = steps_after(walk.steps);
             if (kStatistics) push.costs.at[point] = PointCost(walk.nodes, walk.triangles);
         }
         store_tile(push.visible, tile, ~occluded);

@@ -85,10 +85,10 @@ void main() {
                 const bool hit = packet_occluded(segment_of(point), primitive, asked, walk);
                 if (hit && asked) occluded |= 1u << k;
                 if (!hit && asked && walk.end != kEndFinished) deferred |= 1u << k;
-                steps = steps_after(walk.steps);
                 stack_full += walk.end == kEndStackFull ? 1 : 0;
                 step_limit += walk.end == kEndStepLimit ? 1 : 0;
             }
+            steps = steps_after(walk.steps);
             if (kStatistics) push.costs.at[point] = PointCost(walk.nodes, walk.triangles);
         }
         store_tile(push.visible, tile, ~occluded);

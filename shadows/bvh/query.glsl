@@ -58,7 +58,8 @@ uint next_tile(inout uint taken) {
 }
 
 // Steps that the next traversal may take, after one that left `steps`.
-uint steps_after(uint steps) { return kLoopsAreCut ? steps : kStepLimit; }
+// A loop runs as long as one lane needs it: the lane with the fewest left decides.
+uint steps_after(uint steps) { return kLoopsAreCut ? subgroupMin(steps) : kStepLimit; }
 
 // Leaves a tile's `slots` to the per-point walk, if there are any.
 void defer(uint tile, uint slots) {
