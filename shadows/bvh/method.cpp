@@ -1,9 +1,6 @@
 #include "shadows/bvh/method.hpp"
 
 #include <algorithm>
-#include <chrono>
-
-#include "structures/bvh/reference.hpp"
 
 namespace shadows::bvh {
 namespace {
@@ -13,16 +10,12 @@ using structures::Samples;
 using structures::Settings;
 using structures::geometry::Light;
 using structures::geometry::TriangleMesh;
-using taskpool::gpu::Buffer;
 using taskpool::gpu::Recorder;
 
-std::span<const Parameter> parameters() {
-    static const QueryConfig defaults;
-    static const Parameter all[] = {
-        {"build",
-         std::string("sweep_sah"),
-         "how the tree is built",
-         {"sweep_sah", "object_median", "spatial_median"}},
+std::vector<Parameter> make_parameters() {
+    const QueryConfig defaults;
+    std::vector<Parameter> all = tree_parameters();
+    const Parameter query[] = {
         {"query", std::string("beam"), "how points walk the tree", {"beam", "packet", "lane"}},
         {"statistics", false, "count nodes and triangles per point (slower)"},
         {"stack", std::int64_t{defaults.stack}, "stack entries of a beam or packet", {}, 1, 32},
@@ -30,6 +23,12 @@ std::span<const Parameter> parameters() {
         {"split", std::int64_t{defaults.split}, "triangles before a group is halved", {}, 1},
         {"rounds", std::int64_t{defaults.rounds}, "groups a tile may split into", {}, 1, 256},
     };
+    all.insert(all.end(), std::begin(query), std::end(query));
+    return all;
+}
+
+std::span<const Parameter> parameters() {
+    static const std::vector<Parameter> all = make_parameters();
     return all;
 }
 
@@ -48,48 +47,26 @@ QueryConfig query_config(const Settings& settings) {
 }
 
 std::unique_ptr<Method> create(taskpool::gpu::Device& device, const Settings& settings) {
-    return std::make_unique<BvhMethod>(device, settings.text("build"), query_config(settings));
+    return std::make_unique<BvhMethod>(device, settings);
 }
 
 }  // namespace
 
-BvhMethod::BvhMethod(taskpool::gpu::Device& device, std::string build, const QueryConfig& config)
+BvhMethod::BvhMethod(taskpool::gpu::Device& device, const Settings& settings)
     : device_(device),
-      build_(std::move(build)),
-      config_(config),
-      query_(device, config),
+      config_(query_config(settings)),
+      query_(device, config_),
+      source_(device, settings),
       wide_(device),
       times_(device, 2) {}
 
-void BvhMethod::prepare(const TriangleMesh& mesh) {
-    mesh_ = &mesh;
-    positions_ = taskpool::gpu::make_buffer<glm::vec3>(device_, mesh.positions, "positions");
-    corners_ = taskpool::gpu::make_buffer<glm::uvec3>(device_, mesh.triangles, "triangles");
-}
-
-double BvhMethod::build_binary() {
-    const auto begin = std::chrono::steady_clock::now();
-    structures::bvh::ReferenceConfig config;
-    config.rule = build_ == "object_median"    ? structures::bvh::SplitRule::object_median
-                  : build_ == "spatial_median" ? structures::bvh::SplitRule::spatial_median
-                                               : structures::bvh::SplitRule::sweep_sah;
-    const structures::bvh::Tree tree = structures::bvh::build_reference(*mesh_, config);
-    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
-    nodes_ = taskpool::gpu::make_buffer<structures::bvh::BvhNode>(device_, tree.nodes, "nodes");
-    order_ = taskpool::gpu::make_buffer<std::uint32_t>(device_, tree.order, "order");
-    node_count_ = static_cast<std::uint32_t>(tree.nodes.size());
-    order_count_ = static_cast<std::uint32_t>(tree.order.size());
-    return time.count();
-}
+void BvhMethod::prepare(const TriangleMesh& mesh) { source_.prepare(mesh); }
 
 Samples BvhMethod::build(const Light& light) {
     light_ = light;
-    double milliseconds = build_binary();
-    const structures::bvh::wide::Capacity capacity{order_count_, node_count_};
-    wide_.prepare(capacity);
-    const structures::bvh::wide::BinaryTree binary{
-        nodes_.address(),   order_.address(), positions_.address(),
-        corners_.address(), order_count_,     std::uint32_t(mesh_->triangle_count())};
+    double milliseconds = source_.build();
+    wide_.prepare(source_.capacity());
+    const structures::bvh::wide::BinaryTree binary = source_.tree();
     for (bool first = true; first || wide_.pending() > 0; first = false) {
         times_.clear();
         Recorder recorder(device_);
@@ -102,10 +79,10 @@ Samples BvhMethod::build(const Light& light) {
         device_.run(recorder);
         milliseconds += times_.milliseconds("begin", "end");
     }
-    return {
-        {"build_ms", milliseconds, "ms"},
-        {"memory_bytes", double(structures::bvh::wide::WideBuilder::tree_bytes(capacity)), "bytes"},
-        {"nodes", double(wide_.header().node_count)}};
+    Samples samples = source_.counters();
+    samples.push_back({"build_ms", milliseconds, "ms"});
+    samples.push_back({"nodes", double(wide_.header().node_count)});
+    return samples;
 }
 
 Samples BvhMethod::query(const Points& points, Visibility& visible) {

@@ -4,17 +4,17 @@
 #include <memory>
 
 #include "shadows/bvh/query.hpp"
+#include "shadows/bvh/tree_source.hpp"
 #include "shadows/method.hpp"
-#include "structures/bvh/tree.hpp"
 
 namespace shadows::bvh {
 
 class BvhMethod final : public Method {
   public:
-    BvhMethod(taskpool::gpu::Device& device, std::string build, const QueryConfig& config);
+    BvhMethod(taskpool::gpu::Device& device, const structures::Settings& settings);
 
     void prepare(const structures::geometry::TriangleMesh& mesh) override;
-    /// build_ms (binary tree and collapse), memory_bytes, nodes.
+    /// build_ms (binary tree and collapse), nodes, counters of the pool.
     structures::Samples build(const structures::geometry::Light& light) override;
     /// query_ms, incomplete, deferred and, with statistics, visited nodes and tested triangles.
     structures::Samples query(const Points& points, Visibility& visible) override;
@@ -22,19 +22,13 @@ class BvhMethod final : public Method {
     bool claims_exact() const override { return true; }
 
   private:
-    /// Builds the binary tree and leaves it in `nodes_` and `order_`; milliseconds.
-    double build_binary();
-
     taskpool::gpu::Device& device_;
-    std::string build_;
     QueryConfig config_;
     Query query_;
+    TreeSource source_;
     structures::bvh::wide::WideBuilder wide_;
     taskpool::gpu::Timestamps times_;
-    const structures::geometry::TriangleMesh* mesh_ = nullptr;
     structures::geometry::Light light_;
-    taskpool::gpu::Buffer positions_, corners_, nodes_, order_;
-    std::uint32_t node_count_ = 0, order_count_ = 0;
 };
 
 }  // namespace shadows::bvh

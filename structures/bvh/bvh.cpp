@@ -23,35 +23,35 @@ struct Task {
     uint first, count, node, depth, side;
     uint box[kKeys];
     float center_lower[3], center_upper[3];
-    uint rule, axis, plane, left_count;
+    uint rule, axis;
+    float position, cost;
+    uint left_count;
     uint children[4 * kKeys];
 };
-static_assert(sizeof(Task) == 45 * 4);
+static_assert(sizeof(Task) == 46 * 4);
 
 struct Client {
     std::uint64_t primitives[2], nodes, order, scratch, input;
 };
 static_assert(sizeof(Client) == 48);
 
-std::size_t scratch_words(std::size_t triangles, std::uint32_t bins) {
+std::size_t scratch_words(std::size_t triangles, std::uint32_t planes) {
     const std::size_t chunks = triangles / kChunkPrimitives + 1;
-    return chunks * (3 * bins * (kKeys + 1) + 4 * kKeys) + 2 * (chunks + 1);
+    return chunks * (planes * (2 * kKeys + 1) + 1 + 4 * kKeys) + 2 * (chunks + 1);
 }
 
 std::size_t node_count(std::size_t triangles) { return std::max<std::size_t>(2 * triangles, 1); }
 
 pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
     const std::uint32_t lanes = device.subgroup_size();
-    // Shared atomics are slow where lanes run in lockstep: give each lane bins of its own there.
-    const std::uint32_t columns = device.info().lockstep ? lanes : 1;
-    const std::uint32_t bin_words = 3 * config.bins * (kKeys + 1);
+    const std::uint32_t rows = (config.planes + lanes - 1) / lanes;
     pool::ClientSpec spec;
     spec.task_bytes = sizeof(Task);
     spec.chunk_iterations =
-        4 * kChunkPrimitives / lanes + 8 * lanes + bin_words * (columns + 4) / lanes + 512;
+        2 * kChunkPrimitives + 4 * kChunkPrimitives / lanes + 8 * lanes + 4 * config.planes + 512;
     spec.constants = {
-        {16, config.bins},
-        {17, columns},
+        {16, config.planes},
+        {17, rows},
         {18, config.max_leaf_size},
         {19, config.leaf_by_cost},
         {20, float(config.costs.traversal)},
@@ -59,6 +59,9 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
         {22, config.deterministic ? std::min(lanes, kDeterministicLeafRange) : lanes},
         {23, config.split == Split::spatial_median},
         {24, config.max_depth},
+        {25, config.large_rounds},
+        {26, config.small_rounds},
+        {27, config.round_limit},
     };
     return spec;
 }
@@ -68,7 +71,7 @@ const Config& checked(const gpu::Device& device, const Config& config) {
         if (!holds) throw std::invalid_argument(fmt::format("BVH build: {}", what));
     };
     const std::uint32_t lanes = device.subgroup_size();
-    require(config.bins >= 2 && config.bins <= 64, "bins must be from 2 to 64");
+    require(config.planes >= 3 && config.planes <= 192, "planes must be from 3 to 192");
     require(config.max_leaf_size >= 1 && config.max_leaf_size <= std::min(lanes, 8u),
             "max_leaf_size must be from 1 to 8, and at most the subgroup size");
     require(config.max_depth >= 33, "max_depth must be at least 33");
@@ -82,8 +85,7 @@ const Config& checked(const gpu::Device& device, const Config& config) {
 BvhBuild::BvhBuild(gpu::Device& device, const Config& config)
     : device_(&device),
       config_(checked(device, config)),
-      pool_(device,
-            gpu::find_shader(structures_bvh_shaders(), "structures/bvh/build/build.comp"),
+      pool_(device, gpu::find_shader(structures_bvh_shaders(), "structures/bvh/build/build.comp"),
             client_spec(device, config), config.pool) {}
 
 std::size_t BvhBuild::output_bytes(std::size_t triangles) {
@@ -92,7 +94,7 @@ std::size_t BvhBuild::output_bytes(std::size_t triangles) {
 
 std::size_t BvhBuild::required_bytes(std::size_t triangles) const {
     return output_bytes(triangles) + 2 * triangles * sizeof(Primitive) +
-           scratch_words(triangles, config_.bins) * 4 + sizeof(BuildInput) +
+           scratch_words(triangles, config_.planes) * 4 + sizeof(BuildInput) +
            pool::Pool::required_bytes(*device_, client_spec(*device_, config_), config_.pool);
 }
 
@@ -109,7 +111,7 @@ void BvhBuild::prepare(const geometry::TriangleMesh& mesh) {
         side = gpu::Buffer(*device_, count * sizeof(Primitive), "BVH build primitives");
     nodes_ = gpu::Buffer(*device_, node_count(count) * sizeof(BvhNode), "BVH nodes");
     order_ = gpu::Buffer(*device_, count * sizeof(uint), "BVH order");
-    scratch_ = gpu::Buffer(*device_, scratch_words(count, config_.bins) * 4, "BVH build scratch");
+    scratch_ = gpu::Buffer(*device_, scratch_words(count, config_.planes) * 4, "BVH build scratch");
 }
 
 void BvhBuild::release_scratch() {
@@ -149,13 +151,12 @@ std::uint32_t BvhBuild::node_capacity() const {
 }
 
 Tree BvhBuild::read_back() const {
-    // Each primitive of a leaf was counted when its leaf was written.
     return {gpu::read<BvhNode>(nodes_, node_capacity()),
-            gpu::read<std::uint32_t>(order_, status().state.progress)};
+            gpu::read<std::uint32_t>(order_, primitive_count())};
 }
 
 std::span<const std::string> phase_names() {
-    static const std::string names[] = {"setup", "compact", "bin",   "count",
+    static const std::string names[] = {"setup",     "compact", "planes", "count",
                                         "partition", "small",   "leaves"};
     return names;
 }

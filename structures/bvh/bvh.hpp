@@ -6,8 +6,9 @@
 //     build.nodes().address();                   // BvhNode[], see bvh_shared.h
 //     Tree tree = build.read_back();
 //
-// Vinkler, Bittner and Havran, "Massively Parallel Hierarchical Scene Processing with Applications in
-// Rendering", 2013, section 4.1; what differs is said in build/build.comp. Builds are deterministic.
+// Vinkler, Bittner and Havran, "Massively Parallel Hierarchical Scene Processing with Applications
+// in Rendering", 2013, section 4.1; what differs is said in build/build.comp. Builds are
+// deterministic.
 #pragma once
 
 #include <memory>
@@ -21,23 +22,22 @@
 namespace structures::bvh {
 
 enum class Split {
-    binned_sah,      ///< the cheapest of the borders of `bins` bins on each axis
+    binned_sah,      ///< the cheapest of evenly spaced planes on the three axes
     spatial_median,  ///< the middle of the centres' bounds, on their longest axis
 };
 
 struct Config {
     Split split = Split::binned_sah;
-    /// Bins per axis; 12 make 33 candidate planes on three axes (the paper has 32).
-    std::uint32_t bins = 12;
+    std::uint32_t planes = 32;  ///< candidates, dealt to the three axes in turn
+    std::uint32_t large_rounds = 3, small_rounds = 1, round_limit = 64;
     std::uint32_t max_leaf_size = 4;  ///< 1 to 8
     bool leaf_by_cost = true;         ///< false: every range of at most max_leaf_size is a leaf
     CostModel costs;
     std::uint32_t max_depth = 64;
-    /// Full SAH for ranges of at most 8 primitives, as on the smallest subgroups, so that the tree is
-    /// the same on every device; otherwise for ranges that fit the device's subgroup.
+    /// Full SAH for ranges of at most 8 primitives, as on the smallest subgroups, so that the tree
+    /// is the same on every device; otherwise for ranges that fit the device's subgroup.
     bool deterministic = false;
     taskpool::pool::PoolConfig pool;
-
 };
 
 class BvhBuild final : public taskpool::pool::Job {
@@ -64,6 +64,8 @@ class BvhBuild final : public taskpool::pool::Job {
     /// Upper bound of node indices, and the number of triangles, degenerate ones included.
     std::uint32_t node_capacity() const;
     std::uint32_t triangle_count() const { return triangle_count_; }
+    /// Triangles that are in the tree: all but the degenerate ones. Valid when the job is done.
+    std::uint32_t primitive_count() const { return status().state.progress; }
     /// The mesh on the device: vec3 positions, uvec3 triangles.
     const taskpool::gpu::Buffer& positions() const { return positions_; }
     const taskpool::gpu::Buffer& triangles() const { return triangles_; }

@@ -5,23 +5,15 @@
 #include "taskpool/pool/pool.hpp"
 
 namespace taskpool::pool {
-namespace {
-
-std::uint64_t join(std::uint32_t low, std::uint32_t high) {
-    return std::uint64_t{high} << 32 | low;
-}
-
-}  // namespace
-
 std::string chrome_trace(std::span<const TraceRecord> records,
                          std::span<const std::string> phase_names) {
     std::uint64_t origin = ~std::uint64_t{0};
-    for (const TraceRecord& r : records) origin = std::min(origin, join(r.begin_low, r.begin_high));
+    for (const TraceRecord& r : records) origin = std::min(origin, r.begin);
     std::string json = "{\"displayTimeUnit\":\"ns\",\"traceEvents\":[";
     const char* separator = "\n";
     for (const TraceRecord& r : records) {
-        const std::uint64_t begin = join(r.begin_low, r.begin_high) - origin;
-        const std::uint64_t end = join(r.end_low, r.end_high) - origin;
+        const std::uint64_t begin = r.begin - origin;
+        const std::uint64_t end = r.end - origin;
         const std::string name =
             r.phase < phase_names.size() ? phase_names[r.phase] : fmt::format("phase {}", r.phase);
         json += fmt::format(

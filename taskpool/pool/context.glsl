@@ -7,7 +7,7 @@ uint pool_iterations = 0;     // of the budget
 uint pool_hint = 0;           // where this subgroup looks first for work
 uint pool_free_hint = 0;      // and for a free slot
 int pool_live_delta = 0;      // private tasks spawned less tasks ended, not yet told to the others
-uvec2 pool_began;
+uint64_t pool_began;
 
 /// True in run_chunk while this subgroup runs all chunks of the step: results may stay in `task`.
 bool pool_alone() { return pool_is_alone; }
@@ -136,18 +136,15 @@ void flush_counters() {
 }
 
 /// Device clock in nanoseconds where the driver counts in them (all that we know do).
-uvec2 pool_clock() { return clockRealtime2x32EXT(); }
+uint64_t pool_clock() { return clockRealtimeEXT(); }
 
-uint microseconds_since(uvec2 begin) {
-    const uint64_t now = packUint2x32(pool_clock()), then = packUint2x32(begin);
-    return uint((now - then) / 1000ul);
-}
+uint microseconds_since(uint64_t begin) { return uint((pool_clock() - begin) / 1000ul); }
 
-void trace_chunk(uint slot, uint phase, uint step, uvec2 begin) {
+void trace_chunk(uint slot, uint phase, uint step, uint64_t begin) {
     if (!subgroupElect()) return;
-    const uvec2 end = pool_clock();
+    const uint64_t end = pool_clock();
     const uint i = atomicAdd(pool.state.state.trace_count, 1u);
     if (i < pool.trace_capacity)
         pool.trace.at[i] =
-            TraceRecord(gl_WorkGroupID.x, slot, phase, step, begin.x, begin.y, end.x, end.y);
+            TraceRecord(gl_WorkGroupID.x, slot, phase, step, begin, end);
 }

@@ -62,7 +62,7 @@ struct PoolState {
 
 struct TraceRecord {
     uint subgroup, slot, phase, step;
-    uint begin_low, begin_high, end_low, end_high;  // device clock
+    uint64_t begin, end;  // device clock
 };
 
 #ifdef __cplusplus

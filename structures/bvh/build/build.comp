@@ -1,7 +1,7 @@
 // Top-down BVH build on the task pool: binned SAH or spatial median, then full SAH over ranges that
 // fit a subgroup (Vinkler, Bittner and Havran 2013, section 4.1).
 //
-// Departures from the paper: planes lie in bins over the bounds of the primitives' centres; children
+// Departures from the paper: candidate planes lie in the bounds of the primitives' centres; children
 // are numbered by where their range is split, so nodes need no atomic counter; where a primitive
 // lands depends on nothing but the input. Equal inputs give equal trees, bit for bit, whatever the
 // number of subgroups and the policy; and on every device if kLeafRange is the same.
@@ -16,11 +16,14 @@
 layout(constant_id = 22) const uint kLeafRange = 8;
 layout(constant_id = 23) const bool kSpatialMedian = false;
 layout(constant_id = 24) const uint kMaxDepth = 64;
+/// Rounds of candidate planes: of ranges of more than kChunkPrimitives, and of smaller ones.
+layout(constant_id = 25) const uint kLargeRounds = 3;
+layout(constant_id = 26) const uint kSmallRounds = 1;
+layout(constant_id = 27) const uint kRoundLimit = 64;
 
 const uint kNoPrimitive = 0xffffffffu;
-const uint kRuleBin = 0;     // up to bin `plane` of `axis` goes left
-const uint kRuleMiddle = 1;  // below the middle of the centres' bounds on `axis` goes left
-const uint kRuleHalve = 2;   // the first half goes left
+const uint kRuleHalve = 0;  // the first half goes left
+const uint kRulePlane = 1;  // centres up to `position` on `axis` go left
 
 struct Task {
     uint first, count;
@@ -28,7 +31,9 @@ struct Task {
     uint side;  // which half of the primitive buffer holds the range
     KeyBox box;
     vec3 center_lower, center_upper;  // bounds of lower + upper of the primitives' boxes
-    uint rule, axis, plane;
+    uint rule, axis;
+    float position;
+    float cost;  // of the best plane so far; 0 if none is to be looked for
     uint left_count;
     KeyBox left_box, left_centers, right_box, right_centers;
 };
@@ -67,7 +72,7 @@ uint bits_between(uvec4 ballot, uint from, uint to) {
     return uint(bitCount(kept.x) + bitCount(kept.y));
 }
 
-#include "structures/bvh/build/bins.glsl"
+#include "structures/bvh/build/planes.glsl"
 #include "structures/bvh/build/scratch.glsl"
 #include "structures/bvh/build/setup.glsl"
 #include "structures/bvh/build/leaves.glsl"
@@ -80,7 +85,7 @@ void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
     switch (phase) {
         case kPhaseSetup: setup_chunk(begin, end); break;
         case kPhaseCompact: compact_chunk(begin, end); break;
-        case kPhaseBin: bin_chunk(task, begin, end); break;
+        case kPhasePlanes: planes_chunk(task, step, begin, end); break;
         case kPhaseCount: count_chunk(task, begin, end); break;
         case kPhasePartition: partition_chunk(task, begin, end); break;
         case kPhaseSmall: small_task(task); break;
@@ -92,8 +97,8 @@ Next finish_step(inout Task task, uint phase, uint step) {
     switch (phase) {
         case kPhaseSetup: return after_setup(task);
         case kPhaseCompact: return after_compact(task);
-        case kPhaseBin: return after_bin(task);
-        case kPhaseCount: return after_count(task);
+        case kPhasePlanes: return after_planes(task, step);
+        case kPhaseCount: return after_count(task, step);
         case kPhasePartition: return after_partition(task);
         case kPhaseSmall: return split_task(task);
     }

@@ -16,13 +16,14 @@ using namespace taskpool::gpu::shared_types;
 // Phases of a task, in the order a task may run through them.
 BVH_CONSTANT uint kPhaseSetup = 0;      // boxes of the triangles, scene bounds, degenerate ones
 BVH_CONSTANT uint kPhaseCompact = 1;    // closes the gaps that degenerate triangles left
-BVH_CONSTANT uint kPhaseBin = 2;        // bins a large range (binned SAH only)
+BVH_CONSTANT uint kPhasePlanes = 2;     // SAH over candidate planes of a large range
 BVH_CONSTANT uint kPhaseCount = 3;      // per chunk, how many primitives go left
 BVH_CONSTANT uint kPhasePartition = 4;  // moves them
-BVH_CONSTANT uint kPhaseSmall = 5;      // bins and partitions a range of one chunk
+BVH_CONSTANT uint kPhaseSmall = 5;      // chooses a plane and partitions, in one go
 BVH_CONSTANT uint kPhaseLeaves = 6;     // full SAH over a range that fits a subgroup
 
 BVH_CONSTANT uint kChunkPrimitives = 1024;  // in a chunk, and in a small task at most
+BVH_CONSTANT uint kSampleAll = 8192;        // primitives up to which the SAH looks at all
 BVH_CONSTANT uint kKeys = 6;                // of a box: see keys_of() in keys.glsl
 
 // A primitive on its way down: its box and its id in the mesh.

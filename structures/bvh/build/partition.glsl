@@ -1,46 +1,16 @@
-// Binning and partitioning of ranges, in chunks of large tasks and whole for small ones. Which side a
+// Choosing planes and partitioning ranges, in chunks of large tasks and whole for small ones. Which side a
 // primitive goes to depends on nothing but its box (or, to halve a range, on its place), and it
 // lands at a place that depends on nothing but the order before: builds are deterministic.
 
 /// Side test of a task's split, evaluated the same way wherever it is needed.
-bool goes_left(Task task, uint place, vec3 center, vec3 scale) {
+bool goes_left(Task task, uint place, vec3 center) {
     if (task.rule == kRuleHalve) return place < task.first + task.count / 2;
-    if (task.rule == kRuleMiddle) {
-        precise float middle = 0.5 * task.center_lower[task.axis] + 0.5 * task.center_upper[task.axis];
-        return center[task.axis] < middle;
-    }
-    return bin_of(center, task.center_lower, scale)[task.axis] <= task.plane;
-}
-
-void bin_range(Task task, uint begin, uint end) {
-    const vec3 scale = bin_scale(task.center_lower, task.center_upper);
-    clear_bins();
-    for (uint i = begin; i < end; i += gl_SubgroupSize) {
-        const uint mine = i + gl_SubgroupInvocationID;
-        if (mine < end) {
-            const Primitive primitive = load_primitive(task.side, mine);
-            precise vec3 center = primitive.lower + primitive.upper;
-            const uvec3 bin = bin_of(center, task.center_lower, scale);
-            const KeyBox box = keys_of(primitive.lower, primitive.upper);
-            [[unroll]] for (uint axis = 0; axis < 3; ++axis) add_to_bin(axis, bin[axis], box);
-        }
-    }
-    merge_columns();
-    pool_spend((end - begin) / gl_SubgroupSize + kAllBinWords * (kColumns + 2) / gl_SubgroupSize);
-}
-
-/// Turns a plane into the task's split rule.
-void choose(inout Task task, uint plane) {
-    task.rule = plane == kNoPlane ? kRuleHalve : kRuleBin;
-    if (plane == kNoPlane) return;
-    task.axis = plane / kBins;
-    task.plane = plane % kBins;
+    return (task.axis == 0 ? center.x : task.axis == 1 ? center.y : center.z) <= task.position;
 }
 
 /// Splits [begin, end) of the task's range to places from `left` up and from `right` down, and grows
 /// the children's bounds in reduce_rows. Returns how many went left.
 uint move_range(Task task, uint begin, uint end, uint left, uint right) {
-    const vec3 scale = bin_scale(task.center_lower, task.center_upper);
     KeyBox box[2] = KeyBox[](empty_keys(), empty_keys());
     KeyBox centers[2] = box;
     const uint left_begin = left;
@@ -49,7 +19,7 @@ uint move_range(Task task, uint begin, uint end, uint left, uint right) {
         const bool used = mine < end;
         const Primitive primitive = load_primitive(task.side, min(mine, end - 1));
         precise vec3 center = primitive.lower + primitive.upper;
-        const bool is_left = used && goes_left(task, mine, center, scale);
+        const bool is_left = used && goes_left(task, mine, center);
         const bool is_right = used && !is_left;
         const uvec4 lefts = subgroupBallot(is_left), rights = subgroupBallot(is_right);
         const uint target = is_left ? left + subgroupBallotExclusiveBitCount(lefts)
@@ -73,14 +43,13 @@ uint move_range(Task task, uint begin, uint end, uint left, uint right) {
 }
 
 uint count_left(Task task, uint begin, uint end) {
-    const vec3 scale = bin_scale(task.center_lower, task.center_upper);
     uint count = 0;
     for (uint i = begin; i < end; i += gl_SubgroupSize) {
         const uint mine = i + gl_SubgroupInvocationID;
         const Primitive primitive = load_primitive(task.side, min(mine, end - 1));
         precise vec3 center = primitive.lower + primitive.upper;
         count += subgroupBallotBitCount(
-            subgroupBallot(mine < end && goes_left(task, mine, center, scale)));
+            subgroupBallot(mine < end && goes_left(task, mine, center)));
     }
     pool_spend((end - begin) / gl_SubgroupSize);
     return count;
@@ -88,13 +57,12 @@ uint count_left(Task task, uint begin, uint end) {
 
 // ---- Chunks of large tasks ------------------------------------------------------------------------
 
-void bin_chunk(Task task, uint begin, uint end) {
-    bin_range(task, begin, end);
-    for (uint i = gl_SubgroupInvocationID; i < kAllBinWords; i += gl_SubgroupSize) {
-        const uint word = scratch_word(task.first) + i;
-        if (i % kBinWords == kKeys) atomicAdd(pool.client.scratch.words[word], bins[i]);
-        else atomicMax(pool.client.scratch.words[word], bins[i]);
-    }
+/// A step is a round.
+void planes_chunk(Task task, uint round, uint begin, uint end) {
+    Plane planes[kRows];
+    make_planes(task, round, planes);
+    const uint passed = pass_primitives(task, begin, end, planes);
+    flush_planes(task.first, planes, passed);
 }
 
 void count_chunk(Task task, uint begin, uint end) {
@@ -122,9 +90,11 @@ void take_children(inout Task task) {
 /// A whole task of at most one chunk.
 void small_task(inout Task task) {
     const uint end = task.first + task.count;
-    if (task.rule == kRuleBin) {
-        bin_range(task, task.first, end);
-        choose(task, best_plane());
+    const uint rounds = task.cost == 0 ? 0 : task.count > kRoundLimit ? kSmallRounds : 1;
+    for (uint round = 0; round < rounds; ++round) {
+        Plane planes[kRows];
+        make_planes(task, round, planes);
+        choose_plane(task, planes, pass_primitives(task, task.first, end, planes));
     }
     task.left_count = move_range(task, task.first, end, task.first, end);
     if (task.left_count == 0 || task.left_count == task.count) {

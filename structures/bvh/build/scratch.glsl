@@ -1,7 +1,8 @@
 // Memory that the chunks of a large task share. Disjoint ranges of more than kChunkPrimitives begin in
 // different multiples of it, so where a range begins names its scratch: nothing is allocated.
 
-const uint kChildWord = kAllBinWords;                // four boxes of keys: see take_children()
+const uint kPassedWord = kPlanes * kPlaneWords;  // primitives that passed the planes
+const uint kChildWord = kPassedWord + 1;         // four boxes of keys: see take_children()
 const uint kScratchWords = kChildWord + 4 * kKeys;
 
 uint scratch_word(uint first) { return first / kChunkPrimitives * kScratchWords; }
@@ -47,4 +48,37 @@ uint scan_chunks(uint first, uint count) {
         pool_spend(1);
     }
     return sum;
+}
+
+/// Joins this subgroup's planes into the task's, and `passed` to its count.
+void flush_planes(uint first, Plane planes[kRows], uint passed) {
+    [[unroll]] for (uint row = 0; row < kRows; ++row) {
+        const uint id = row * gl_SubgroupSize + gl_SubgroupInvocationID;
+        if (id >= kPlanes) break;
+        const uint at = scratch_word(first) + id * kPlaneWords;
+        [[unroll]] for (uint k = 0; k < 3; ++k) {
+            atomicMax(pool.client.scratch.words[at + k], planes[row].left.low[k]);
+            atomicMax(pool.client.scratch.words[at + 3 + k], planes[row].left.high[k]);
+            atomicMax(pool.client.scratch.words[at + 6 + k], planes[row].right.low[k]);
+            atomicMax(pool.client.scratch.words[at + 9 + k], planes[row].right.high[k]);
+        }
+        atomicAdd(pool.client.scratch.words[at + 12], planes[row].left_count);
+    }
+    if (subgroupElect()) atomicAdd(pool.client.scratch.words[scratch_word(first) + kPassedWord], passed);
+}
+
+/// Fills the planes' boxes and counts with the task's; returns how many primitives passed.
+uint fetch_planes(uint first, inout Plane planes[kRows]) {
+    [[unroll]] for (uint row = 0; row < kRows; ++row) {
+        const uint id = min(row * gl_SubgroupSize + gl_SubgroupInvocationID, kPlanes - 1);
+        const uint at = scratch_word(first) + id * kPlaneWords;
+        [[unroll]] for (uint k = 0; k < 3; ++k) {
+            planes[row].left.low[k] = pool.client.scratch.words[at + k];
+            planes[row].left.high[k] = pool.client.scratch.words[at + 3 + k];
+            planes[row].right.low[k] = pool.client.scratch.words[at + 6 + k];
+            planes[row].right.high[k] = pool.client.scratch.words[at + 9 + k];
+        }
+        planes[row].left_count = pool.client.scratch.words[at + 12];
+    }
+    return pool.client.scratch.words[scratch_word(first) + kPassedWord];
 }

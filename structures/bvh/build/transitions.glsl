@@ -6,16 +6,19 @@ uint chunks_of(uint count) { return (count + kChunkPrimitives - 1) / kChunkPrimi
 Next first_step(Task task) {
     if (task.count <= kLeafRange) return next_step(kPhaseLeaves, 0, 1);
     if (task.count <= kChunkPrimitives) return next_step(kPhaseSmall, 0, 1);
-    return next_step(task.rule == kRuleBin ? kPhaseBin : kPhaseCount, 0, chunks_of(task.count));
+    return next_step(task.cost != 0 ? kPhasePlanes : kPhaseCount, 0, chunks_of(task.count));
 }
 
 /// Rule of a fresh task. Halving bounds the depth: once only halving can still finish above kMaxDepth.
 void set_rule(inout Task task) {
     precise vec3 extent = task.center_upper - task.center_lower;
     const uint halvings = uint(findMSB(max(task.count, 1u))) + 1;
-    task.rule = kSpatialMedian ? kRuleMiddle : kRuleBin;
-    if (task.depth + halvings >= kMaxDepth || extent == vec3(0)) task.rule = kRuleHalve;
+    const bool halve = task.depth + halvings >= kMaxDepth || extent == vec3(0);
+    task.rule = kSpatialMedian && !halve ? kRulePlane : kRuleHalve;
+    task.cost = kSpatialMedian || halve ? 0 : kInfinity;
     task.axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    precise float middle = 0.5 * task.center_lower[task.axis] + 0.5 * task.center_upper[task.axis];
+    task.position = middle;
 }
 
 /// The root's bounds have been gathered in scratch 0; goes on with its first step.
@@ -49,20 +52,23 @@ Next after_compact(inout Task task) {
     return start_root(task);
 }
 
-Next after_bin(inout Task task) {
-    for (uint i = gl_SubgroupInvocationID; i < kAllBinWords; i += gl_SubgroupSize)
-        bins[i] = pool.client.scratch.words[scratch_word(task.first) + i];
-    subgroup_sync();
-    choose(task, best_plane());
-    return next_step(kPhaseCount, 0, chunks_of(task.count));
+Next after_planes(inout Task task, uint round) {
+    Plane planes[kRows];
+    make_planes(task, round, planes);
+    const uint passed = fetch_planes(task.first, planes);
+    choose_plane(task, planes, passed);
+    clear_scratch(task.first);
+    const uint chunks = chunks_of(task.count);
+    if (round + 1 < kLargeRounds) return next_step(kPhasePlanes, round + 1, chunks);
+    return next_step(kPhaseCount, 0, chunks);
 }
 
-Next after_count(inout Task task) {
+Next after_count(inout Task task, uint step) {
     task.left_count = scan_chunks(task.first, task.count);
     if (task.left_count == 0 || task.left_count == task.count) {
         // The middle of the centres separated nothing.
         task.rule = kRuleHalve;
-        return next_step(kPhaseCount, 1, chunks_of(task.count));
+        return next_step(kPhaseCount, step + 1, chunks_of(task.count));
     }
     return next_step(kPhasePartition, 0, chunks_of(task.count));
 }
@@ -96,7 +102,6 @@ Task child_of(Task parent, uint child) {
     }
     task.center_lower = lower_of(centers);
     task.center_upper = upper_of(centers);
-    task.plane = 0;
     task.left_count = 0;
     set_rule(task);
     if (task.count > kChunkPrimitives) clear_scratch(task.first);
