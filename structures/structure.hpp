@@ -40,6 +40,8 @@ class Builder {
     virtual std::vector<std::string> validate() = 0;
     /// A hash of the finished structure's bytes: equal builds have equal fingerprints.
     virtual std::uint64_t fingerprint() = 0;
+    /// The last build chunk by chunk as Chrome trace-event JSON; empty unless the settings ask for it.
+    virtual std::string trace() { return {}; }
 };
 
 struct StructureRow {

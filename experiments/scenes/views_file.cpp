@@ -57,6 +57,12 @@ View parse_view(const json& description) {
     return view;
 }
 
+json read_views(const std::filesystem::path& path, const std::string& scene) {
+    const json root = json::parse(read_bytes(path, false));
+    const json& scenes = entry(root, "scenes", "entry");
+    return entry(entry(scenes, scene, "scene"), "views", "entry");
+}
+
 }  // namespace
 
 View load_view(const std::filesystem::path& path, const std::filesystem::path& scene_file,
@@ -65,9 +71,7 @@ View load_view(const std::filesystem::path& path, const std::filesystem::path& s
     const std::string where = fmt::format("scene '{}', view '{}': ", scene, view);
     std::string place;  // put in front of errors once the view is found
     try {
-        const json root = json::parse(read_bytes(path, false));
-        const json& scenes = entry(root, "scenes", "entry");
-        const json& views = entry(entry(scenes, scene, "scene"), "views", "entry");
+        const json views = read_views(path, scene);
         const json& description = entry(views, view, fmt::format("view of '{}' called", scene));
         place = where;
         return parse_view(description);
@@ -75,6 +79,21 @@ View load_view(const std::filesystem::path& path, const std::filesystem::path& s
         throw LoadError(path, place + error.what());
     } catch (const json::exception& error) {
         throw LoadError(path, fmt::format("{}malformed: {}", place, error.what()));
+    }
+}
+
+std::vector<std::string> view_names(const std::filesystem::path& path,
+                                    const std::filesystem::path& scene_file) {
+    try {
+        const json views = read_views(path, scene_file.filename().string());
+        std::vector<std::string> names;
+        for (const auto& [name, view] : views.items())
+            names.push_back(name);
+        return names;
+    } catch (const FormatError& error) {
+        throw LoadError(path, error.what());
+    } catch (const json::exception& error) {
+        throw LoadError(path, fmt::format("malformed: {}", error.what()));
     }
 }
 

@@ -10,6 +10,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "experiments/scenes/camera.hpp"
 #include "experiments/scenes/load_error.hpp"
@@ -20,5 +21,9 @@ namespace experiments::scenes {
 /// LoadError naming the file and what is missing in it, with the scenes or views that are there.
 View load_view(const std::filesystem::path& path, const std::filesystem::path& scene_file,
                const std::string& view);
+
+/// The names of all views of that scene, in alphabetical order. Throws LoadError as load_view().
+std::vector<std::string> view_names(const std::filesystem::path& path,
+                                    const std::filesystem::path& scene_file);
 
 }  // namespace experiments::scenes

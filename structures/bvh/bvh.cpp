@@ -151,9 +151,8 @@ std::uint32_t BvhBuild::node_capacity() const {
 }
 
 Tree BvhBuild::read_back() const {
-    // Each primitive of a leaf was counted when its leaf was written.
     return {gpu::read<BvhNode>(nodes_, node_capacity()),
-            gpu::read<std::uint32_t>(order_, status().state.progress)};
+            gpu::read<std::uint32_t>(order_, primitive_count())};
 }
 
 std::span<const std::string> phase_names() {

@@ -64,6 +64,8 @@ class BvhBuild final : public taskpool::pool::Job {
     /// Upper bound of node indices, and the number of triangles, degenerate ones included.
     std::uint32_t node_capacity() const;
     std::uint32_t triangle_count() const { return triangle_count_; }
+    /// Triangles that are in the tree: all but the degenerate ones. Valid when the job is done.
+    std::uint32_t primitive_count() const { return status().state.progress; }
     /// The mesh on the device: vec3 positions, uvec3 triangles.
     const taskpool::gpu::Buffer& positions() const { return positions_; }
     const taskpool::gpu::Buffer& triangles() const { return triangles_; }

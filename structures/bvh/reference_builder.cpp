@@ -1,8 +1,8 @@
 #include "structures/bvh/reference_builder.hpp"
 
-#include <bit>
 #include <stdexcept>
 
+#include "structures/bvh/fingerprint.hpp"
 #include "structures/bvh/quality.hpp"
 #include "structures/bvh/validate.hpp"
 
@@ -12,19 +12,6 @@ namespace {
 std::unique_ptr<Builder> create(taskpool::gpu::Device&, const Settings& settings) {
     return std::make_unique<ReferenceBuilder>(reference_config(settings));
 }
-
-/// FNV-1a over words.
-class Hash {
-  public:
-    void add(std::uint64_t word) { value_ = (value_ ^ word) * 1099511628211ull; }
-    void add(glm::vec3 v) {
-        for (int i = 0; i < 3; ++i) add(std::bit_cast<std::uint32_t>(v[i]));
-    }
-    std::uint64_t value() const { return value_; }
-
-  private:
-    std::uint64_t value_ = 14695981039346656037ull;
-};
 
 }  // namespace
 
@@ -86,17 +73,7 @@ std::vector<std::string> ReferenceBuilder::validate() {
                           .tight = true});
 }
 
-std::uint64_t ReferenceBuilder::fingerprint() {
-    Hash hash;
-    for (const BvhNode& node : tree().nodes) {
-        hash.add(node.lower);
-        hash.add(node.first);
-        hash.add(node.upper);
-        hash.add(node.count);
-    }
-    for (const std::uint32_t id : tree().order) hash.add(id);
-    return hash.value();
-}
+std::uint64_t ReferenceBuilder::fingerprint() { return bvh::fingerprint(tree()); }
 
 const StructureRow kReferenceRow = {
     "bvh_reference", "binary BVH built on the CPU: sweep SAH, object median or spatial median",

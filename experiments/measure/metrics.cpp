@@ -1,0 +1,63 @@
+#include "experiments/measure/metrics.hpp"
+
+namespace experiments::measure {
+namespace {
+
+using enum Better;
+
+constexpr Metric kMetrics[] = {
+    {"cluster_ms", "ms", lower, "time to group the triangles before the build"},
+    {"build_ms", "ms", lower, "time to build the structure"},
+    {"query_ms", "ms", lower, "time to answer every point"},
+    {"total_ms", "ms", lower, "build_ms and query_ms of one repetition"},
+    {"gbuffer_ms", "ms", lower, "time to rasterise the points, once per scene"},
+    {"wall_ms", "ms", lower, "build by the host's clock: launches, waiting, growth"},
+    {"launches", "1", lower, "kernel launches of the task pool"},
+    {"tasks", "1", neither, "tasks the pool ran"},
+    {"pool_peak", "1", lower, "tasks alive at the same time, at most"},
+    {"pool_chunks", "1", neither, "work chunks run"},
+    {"pool_claims", "1", lower, "claims of chunks from the shared pool"},
+    {"pool_failed_claims", "1", lower, "claims that another subgroup forestalled"},
+    {"pool_polls", "1", lower, "looks for work or for a free slot"},
+    {"pool_growths", "1", lower, "times the pool ran out of slots and was doubled"},
+    {"memory_bytes", "bytes", lower, "memory at the peak of the build"},
+    {"visited_nodes_mean", "1", lower, "nodes visited per point, mean"},
+    {"visited_nodes_max", "1", lower, "nodes visited per point, maximum"},
+    {"tested_triangles_mean", "1", lower, "triangles tested per point, mean"},
+    {"exact_tests_mean", "1", lower, "exact leaf tests per point, mean"},
+    {"deferred_points", "1", lower, "points that a beam left to a walk of their own"},
+    {"groups", "1", lower, "groups of points that beams walked the tree with"},
+    {"casters_total", "1", neither, "shadow casters in the scene"},
+    {"casters_inserted", "1", neither, "shadow casters that entered the structure"},
+    {"points", "1", neither, "points with geometry"},
+    {"shadowed", "1", neither, "points found in shadow"},
+    {"differing_points", "1", lower, "points answered differently from the reference method"},
+    {"false_lit", "1", lower, "points wrongly found lit, outside the rounding band"},
+    {"false_shadowed", "1", lower, "points wrongly found shadowed, outside the rounding band"},
+    {"ambiguous", "1", neither, "points within the rounding band"},
+    {"incomplete", "1", lower, "points whose traversal did not end by itself"},
+    {"triangles", "1", neither, "triangles of the scene"},
+    {"degenerate", "1", neither, "triangles without area: counted and left out"},
+    {"nodes", "1", neither, "nodes of the tree"},
+    {"sah_cost", "1", lower, "surface area cost, c_T = 3, c_I = 2"},
+    {"sah_cost_compacted", "1", lower, "the same with subtrees turned into leaves where cheaper"},
+    {"epo", "1", lower, "end-point overlap of the tree"},
+    {"depth_max", "1", lower, "deepest leaf"},
+    {"depth_mean", "1", lower, "mean depth of a leaf"},
+    {"leaf_size_mean", "1", neither, "triangles per leaf, mean"},
+    {"packet_width", "1", neither, "rays per packet"},
+    {"rays", "1", neither, "rays traced"},
+    {"mrays_per_s", "Mrays/s", higher, "rays per second, in millions"},
+};
+
+}  // namespace
+
+std::span<const Metric> metrics() { return kMetrics; }
+
+const Metric* find_metric(std::string_view name) {
+    for (const Metric& metric : kMetrics)
+        if (metric.name == name) return &metric;
+    return nullptr;
+}
+
+}  // namespace experiments::measure

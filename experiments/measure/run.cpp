@@ -1,0 +1,39 @@
+#include "experiments/measure/run.hpp"
+
+#include "experiments/report/report.hpp"
+
+namespace experiments::measure {
+
+RunOutcome run_experiment(taskpool::gpu::Device& device, const config::Config& config,
+                          const Registries& registries, const RunOptions& options,
+                          Progress& progress) {
+    const std::filesystem::path path =
+        options.out.empty() ? fresh_folder(config.name)
+                            : std::filesystem::absolute(options.out).lexically_normal();
+    RunFolder folder = open_run(path, options.resume, config, device.info(), options.command_line);
+    progress.log_to(path / "log.txt");
+    RunOutcome outcome{path, {}, {}};
+    try {
+        SamplesFile samples(folder.samples());
+        Session session{device, config, registries, folder, samples, progress};
+        config.kind == "build" ? run_builds(session) : run_shadows(session);
+        outcome.failures = session.failures;
+        outcome.results = summarise(read_samples(folder.samples()));
+        write_summary(folder);
+        close_run(folder, outcome.failures.empty() ? 0 : 1, outcome.failures);
+        report::write_report(path);
+    } catch (const std::exception& error) {
+        progress.log_error(error.what());
+        // The manifest says how the run ended if the disk still takes it; the first error counts.
+        try {
+            outcome.failures.push_back(error.what());
+            close_run(folder, 1, outcome.failures);
+        } catch (const OutputError&) {
+        }
+        throw;
+    }
+    progress.clear();
+    return outcome;
+}
+
+}  // namespace experiments::measure

@@ -1,0 +1,29 @@
+#include "experiments/measure/session.hpp"
+
+#include <algorithm>
+#include <new>
+
+namespace experiments::measure {
+
+bool Session::attempt(const std::string& place, const std::function<void()>& work) {
+    std::string message;
+    try {
+        work();
+        return true;
+    } catch (const OutputError&) {
+        throw;
+    } catch (const taskpool::gpu::Error& error) {
+        if (error.result == VK_ERROR_DEVICE_LOST) throw;
+        message = error.what();
+    } catch (const std::bad_alloc&) {
+        message = "memory does not suffice; use a smaller scene or resolution";
+    } catch (const std::exception& error) {
+        message = error.what();
+    }
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    failures.push_back(place + ": " + message);
+    progress.error(failures.back());
+    return false;
+}
+
+}  // namespace experiments::measure

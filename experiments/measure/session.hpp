@@ -1,0 +1,52 @@
+// One run under way: what it measures with, where the numbers go, and what went wrong so far.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "experiments/config/config.hpp"
+#include "experiments/measure/progress.hpp"
+#include "experiments/measure/run_folder.hpp"
+#include "experiments/measure/samples_file.hpp"
+#include "shadows/method.hpp"
+#include "structures/structure.hpp"
+
+namespace experiments::measure {
+
+/// What the program can measure.
+struct Registries {
+    std::span<const structures::StructureRow> structures;
+    std::span<const shadows::MethodRow> methods;
+};
+
+/// The `method` of rows that describe a scene itself. They are written when all else of the scene
+/// is done, so their presence says so.
+inline constexpr const char* kSceneRows = "(scene)";
+
+struct Session {
+    taskpool::gpu::Device& device;
+    const config::Config& config;
+    const Registries& registries;
+    RunFolder& folder;
+    SamplesFile& samples;
+    Progress& progress;
+    std::vector<std::string> failures{};
+    int steps_done = 0;
+
+    int steps_total() const {
+        return int(config.scenes.size() * config.methods.size()) * (config.warmup + config.repeat);
+    }
+    void step(const std::string& what) { progress.step(what, steps_done++, steps_total()); }
+    /// Runs `work`. An exception becomes a failure of the run, named by `place`, and false; the run
+    /// goes on. Lost devices and unwritable results end it: those exceptions pass.
+    bool attempt(const std::string& place, const std::function<void()>& work);
+};
+
+/// kind = "shadows": builds and queries every method on every scene, compares the answers.
+void run_shadows(Session& session);
+/// kind = "build": builds every structure over every scene, checks and describes the trees.
+void run_builds(Session& session);
+
+}  // namespace experiments::measure

@@ -1,0 +1,172 @@
+// kind = "shadows". On each scene the methods take turns, repetition by repetition (A B C, A B C,
+// ...), so that a machine that slows down or speeds up on the way does so for all of them.
+#include <fmt/format.h>
+
+#include <bit>
+#include <memory>
+
+#include "experiments/gbuffer/gbuffer.hpp"
+#include "experiments/measure/pictures.hpp"
+#include "experiments/measure/scene_input.hpp"
+#include "experiments/measure/session.hpp"
+
+namespace experiments::measure {
+namespace {
+
+/// A method at work on one scene.
+struct Contestant {
+    const config::Method* config;
+    std::unique_ptr<shadows::Method> method{};  ///< none once it has failed
+    shadows::Visibility visible{};              ///< last answer
+
+    std::string label() const { return config->name + " " + config->variant; }
+};
+
+/// One bit per point with geometry.
+std::vector<std::uint32_t> geometry_mask(const shadows::Points& points) {
+    std::vector<std::uint32_t> mask(points.count() / 32);
+    for (std::uint32_t i = 0; i < points.count(); ++i)
+        if (points.host().primitive[i] != shadows::kNoPrimitive) mask[i / 32] |= 1u << (i % 32);
+    return mask;
+}
+
+const shadows::MethodRow& find_row(const Registries& registries, const std::string& name) {
+    for (const shadows::MethodRow& row : registries.methods)
+        if (row.name == name) return row;
+    throw std::logic_error("method '" + name + "' has left the registry");
+}
+
+double value_of(const structures::Samples& samples, std::string_view metric) {
+    for (const structures::Sample& sample : samples)
+        if (sample.metric == metric) return sample.value;
+    return 0;
+}
+
+/// Build and query once; the samples of both and their sum.
+structures::Samples answer(Contestant& contestant, const SceneInput& input,
+                           const shadows::Points& points) {
+    structures::Samples samples = contestant.method->build(input.light);
+    const structures::Samples asked = contestant.method->query(points, contestant.visible);
+    if (contestant.visible.words.size() != points.count() / 32)
+        throw std::runtime_error(fmt::format("answered {} words of points, expected {}",
+                                             contestant.visible.words.size(), points.count() / 32));
+    samples.insert(samples.end(), asked.begin(), asked.end());
+    samples.push_back(
+        {"total_ms", value_of(samples, "build_ms") + value_of(samples, "query_ms"), "ms"});
+    return samples;
+}
+
+class SceneRun {
+  public:
+    SceneRun(Session& session, const config::Scene& scene) : session_(session), scene_(scene) {}
+
+    void run() {
+        session_.step(scene_.name + ": loading");
+        --session_.steps_done;
+        const SceneInput input = load_scene(scene_);
+        const gbuffer::GBuffer gbuffer = gbuffer::render_gbuffer(
+            session_.device, input.mesh, input.camera, scene_.width, scene_.height);
+        points_ = &gbuffer.points;
+        mask_ = geometry_mask(gbuffer.points);
+        if (gbuffer.points.valid_count() == 0)
+            session_.progress.note(scene_.name + ": the camera sees no geometry");
+
+        prepare(input);
+        for (int i = 0; i < session_.config.warmup; ++i)
+            for (Contestant& contestant : contestants_) attempt(contestant, input, -1);
+        const Contestant& reference = contestants_[session_.config.reference];
+        if (reference.method) reference_ = reference.visible.words;
+        for (int i = 0; i < session_.config.repeat; ++i)
+            for (Contestant& contestant : contestants_) attempt(contestant, input, i);
+
+        draw(input);
+        // A scene with a failure stays open, so that --resume tries it again.
+        for (const Contestant& contestant : contestants_)
+            if (!contestant.method) return;
+        session_.samples.append({scene_.name, kSceneRows, "", 0, 0},
+                                {{"gbuffer_ms", gbuffer.milliseconds, "ms"},
+                                 {"points", double(gbuffer.points.valid_count())},
+                                 {"triangles", double(input.mesh.triangle_count())},
+                                 {"degenerate", double(input.report.degenerate)}});
+    }
+
+  private:
+    std::string place(const Contestant& contestant) const {
+        return scene_.name + ", " + contestant.label();
+    }
+
+    void prepare(const SceneInput& input) {
+        for (const config::Method& method : session_.config.methods) {
+            Contestant& contestant = contestants_.emplace_back(&method);
+            const bool ready = session_.attempt(place(contestant), [&] {
+                const shadows::MethodRow& row = find_row(session_.registries, method.name);
+                contestant.method = row.create(session_.device, method.settings);
+                contestant.method->prepare(input.mesh);
+            });
+            if (!ready) contestant.method.reset();
+        }
+    }
+
+    /// One repetition, or a warm-up if `repetition` is negative.
+    void attempt(Contestant& contestant, const SceneInput& input, int repetition) {
+        const Key key{scene_.name, contestant.config->name, contestant.config->variant, 0,
+                      repetition};
+        session_.step(fmt::format("{}  {}  {}", scene_.name, contestant.label(),
+                                  repetition < 0 ? "warm-up" : fmt::format("#{}", repetition + 1)));
+        if (!contestant.method || session_.samples.complete(key)) return;
+        const bool done = session_.attempt(place(contestant), [&] {
+            structures::Samples samples = answer(contestant, input, *points_);
+            if (repetition < 0) return;
+            count(contestant, samples);
+            session_.samples.append(key, samples);
+        });
+        if (!done) contestant.method.reset();
+    }
+
+    void count(const Contestant& contestant, structures::Samples& samples) const {
+        double shadowed = 0, differing = 0;
+        for (std::size_t w = 0; w < mask_.size(); ++w) {
+            const std::uint32_t lit = contestant.visible.words[w];
+            shadowed += std::popcount(~lit & mask_[w]);
+            if (!reference_.empty()) differing += std::popcount((lit ^ reference_[w]) & mask_[w]);
+        }
+        samples.push_back({"points", double(points_->valid_count())});
+        samples.push_back({"shadowed", shadowed});
+        if (!reference_.empty()) samples.push_back({"differing_points", differing});
+    }
+
+    void draw(const SceneInput& input) {
+        for (Contestant& contestant : contestants_) {
+            if (!contestant.method) continue;
+            session_.attempt(place(contestant), [&] {
+                Pictures pictures{session_.folder, scene_.name, contestant.config->name,
+                                  contestant.config->variant};
+                pictures.shaded(*points_, contestant.visible, input.light);
+                pictures.visibility(*points_, contestant.visible);
+                if (!reference_.empty())
+                    pictures.difference(*points_, contestant.visible, reference_);
+                pictures.heat(*points_, contestant.method->heat());
+            });
+        }
+    }
+
+    Session& session_;
+    const config::Scene& scene_;
+    const shadows::Points* points_ = nullptr;
+    std::vector<std::uint32_t> mask_, reference_;
+    std::vector<Contestant> contestants_;
+};
+
+}  // namespace
+
+void run_shadows(Session& session) {
+    const int steps = session.steps_total() / int(session.config.scenes.size());
+    for (std::size_t i = 0; i < session.config.scenes.size(); ++i) {
+        const config::Scene& scene = session.config.scenes[i];
+        session.steps_done = int(i) * steps;
+        if (session.samples.complete({scene.name, kSceneRows, "", 0, 0})) continue;
+        session.attempt(scene.name, [&] { SceneRun(session, scene).run(); });
+    }
+}
+
+}  // namespace experiments::measure

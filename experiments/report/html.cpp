@@ -1,0 +1,104 @@
+#include "experiments/report/html.hpp"
+
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+namespace experiments::report {
+namespace {
+
+constexpr const char* kStyle = R"css(
+:root { color-scheme: light dark; --ink: #1c2420; --soft: #5b6660; --paper: #fbfbf9; --card: #ffffff;
+  --line: #dfe3df; --bar: #2f7d5b; --bar2: #b9c7bf; --mark: #13251c; --bad: #b3261e; --best: #1d6b47; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e4e9e5; --soft: #9aa69f; --paper: #141815;
+  --card: #1c211d; --line: #313a34; --bar: #4fae84; --bar2: #56635c; --mark: #eef5f0; --bad: #ff8a80;
+  --best: #7fd6ab; } }
+* { box-sizing: border-box; }
+body { margin: 0 auto; max-width: 76rem; padding: 1.5rem 1rem 4rem; background: var(--paper);
+  color: var(--ink); font: 16px/1.5 system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
+h1 { font-size: 1.7rem; margin: 0; } h2 { font-size: 1.25rem; margin: 2.5rem 0 .75rem; }
+h3 { font-size: 1rem; margin: 1.5rem 0 .5rem; color: var(--soft); font-weight: 600; }
+p { margin: .25rem 0; } .soft { color: var(--soft); } .bad { color: var(--bad); }
+.scroll { overflow-x: auto; background: var(--card); border: 1px solid var(--line);
+  border-radius: .5rem; }
+table { border-collapse: collapse; width: 100%; font-size: .9rem; }
+th, td { padding: .4rem .75rem; text-align: right; border-bottom: 1px solid var(--line);
+  white-space: nowrap; font-variant-numeric: tabular-nums; }
+tr:last-child td { border-bottom: 0; } th { font-weight: 600; color: var(--soft); }
+th:first-child, td:first-child { text-align: left; }
+td .spread { display: block; font-size: .75rem; font-weight: 400; color: var(--soft); }
+td.best { color: var(--best); font-weight: 600; }
+table.facts td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
+table.facts td:first-child { color: var(--soft); white-space: nowrap; vertical-align: top; }
+.charts { display: grid; gap: 1rem; margin: 1rem 0;
+  grid-template-columns: repeat(auto-fit, minmax(min(20rem, 100%), 1fr)); }
+.charts svg { width: 100%; max-width: 36rem; height: auto; background: var(--card);
+  border: 1px solid var(--line); border-radius: .5rem; }
+svg text { fill: var(--ink); font: 12px system-ui, "DejaVu Sans", sans-serif; }
+svg .title { font-weight: 600; font-size: 13px; } svg .value { text-anchor: end; }
+svg .bar { fill: var(--bar); } svg .track { fill: var(--bar2); opacity: .25; }
+svg .spread { stroke: var(--mark); stroke-width: 1.5; fill: none; }
+.pictures { display: grid; gap: 1rem;
+  grid-template-columns: repeat(auto-fill, minmax(min(22rem, 100%), 1fr)); }
+figure { margin: 0; } figure img { width: 100%; height: auto; border-radius: .5rem;
+  border: 1px solid var(--line); display: block; }
+figcaption { font-size: .85rem; color: var(--soft); padding-top: .25rem; }
+pre { overflow-x: auto; background: var(--card); border: 1px solid var(--line); padding: .75rem;
+  border-radius: .5rem; font-size: .8rem; }
+)css";
+
+std::string base64(std::string_view bytes) {
+    static constexpr char kDigits[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+        std::uint32_t group = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k)
+            text += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string escape(std::string_view text) {
+    std::string out;
+    for (char c : text) {
+        switch (c) {
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            default:
+                out += c;
+        }
+    }
+    return out;
+}
+
+std::string png_data_uri(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw std::runtime_error(file.string() + ": cannot be read");
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    return "data:image/png;base64," + base64(bytes);
+}
+
+std::string document_head(const std::string& title) {
+    return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+           escape(title) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n";
+}
+
+}  // namespace experiments::report

@@ -1,0 +1,19 @@
+// Small pieces of HTML.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace experiments::report {
+
+/// `text` with the characters that mean something in HTML replaced.
+std::string escape(std::string_view text);
+
+/// "data:image/png;base64,..." of a file. Throws std::runtime_error if it cannot be read.
+std::string png_data_uri(const std::filesystem::path& file);
+
+/// Opening of a document up to and with <body>: style sheet for light and dark, small and large.
+std::string document_head(const std::string& title);
+
+}  // namespace experiments::report

@@ -1,0 +1,12 @@
+// report.html: a run as one page that needs nothing else, no network, no script.
+#pragma once
+
+#include <filesystem>
+
+namespace experiments::report {
+
+/// (Re)makes report.html in a run's folder from samples.csv, manifest.json and images/. Throws
+/// std::runtime_error naming the file that is missing or unreadable.
+void write_report(const std::filesystem::path& run);
+
+}  // namespace experiments::report

@@ -1,0 +1,220 @@
+// Beam query: one subgroup answers a tile of points by walking a structure with groups of them.
+//
+//     #include "shadows/beam/beam.glsl"
+//     layout(...) ...                              // the structure's parameters
+//     vec3 beam_point(uint point) { ... }          // hooks: world position, primitive id,
+//     uint beam_primitive(uint point) { ... }
+//     void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint primitive) {...}
+//     void beam_walk() { ... beam_meets_box(...); beam_test_triangles(...); }
+//     void main() { beam_light = ...; TileAnswer answer = answer_tile(tile, origin, size); ... }
+//
+// A tile's points fall into groups (group.glsl): similar directions from the light. The structure's
+// walk finds triangles that may occlude a group; those are culled against the beam, then tested
+// against the points (candidate.glsl). Everything conservative only decides what to skip; points it
+// cannot decide go to the exact test. A walk that runs out of stack, steps or rounds defers its
+// points to the caller, who must answer them another way.
+//
+// The includer defines kDirectional, kStepLimit, kRoundLimit, kSplitTriangles, and includes device.glsl first.
+#ifndef SHADOWS_BEAM_BEAM_GLSL
+#define SHADOWS_BEAM_BEAM_GLSL
+#include "shadows/occlusion.glsl"
+
+vec3 beam_light;  // position, or direction towards a directional light
+
+#include "shadows/beam/points.glsl"
+#include "shadows/beam/group.glsl"
+#include "shadows/beam/candidate.glsl"
+
+// Hooks.
+vec3 beam_point(uint point);
+uint beam_primitive(uint point);
+void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint primitive);
+// Walks the structure with `beam`; stops early when group_finished() or out of steps.
+void beam_walk();
+
+const uint kBeamFinished = 0u, kBeamStackFull = 1u, kBeamStepLimit = 2u, kBeamRoundLimit = 3u;
+const uint kBeamSplit = 4u;  // not an end: the group is too expensive as a whole
+
+struct TileAnswer {
+    uint occluded;  // slots
+    uint deferred;  // slots without an answer yet
+    uint ends;      // bit set of why groups were given up: 1 << kBeam...
+    uint groups;
+    uint exact_tests;
+};
+
+// State of the tile under way; uniform over the subgroup except for the masks.
+uint beam_tile;
+uint beam_primitives;  // which hashes the primitives of its points have
+uint beam_group;     // slots of the group
+uint beam_occluded;  // slots found occluded, of any group
+uint beam_steps;     // loop iterations so far
+uint beam_end;       // why the walk of the group ended
+uint beam_nodes, beam_triangles, beam_exact_tests;
+uint beam_recent = 0xffffffffu;  // a triangle that has occluded a whole group, one per lane
+uint beam_recent_count = 0;
+uint beam_halvings;         // of the tile's groups
+uint beam_group_triangles;  // tested by this group
+bool beam_finished;  // every point of the group is occluded
+
+bool group_finished() { return beam_finished; }
+
+uint primitive_bit(uint primitive) { return 1u << (primitive * 2654435761u >> 27); }
+
+// Limits the walk; false once the steps are used up.
+bool beam_step(uint count) {
+    beam_steps += count;
+    if (beam_steps > kStepLimit) beam_end = kBeamStepLimit;
+    return beam_end == kBeamFinished;
+}
+
+// Notes triangles about to be tested; false if the group had better be split first.
+bool beam_count_triangles(uint count) {
+    beam_triangles += count;
+    beam_group_triangles += count;
+    if (beam_group_triangles > kSplitTriangles && beam_halvings < kMaxHalvings) {
+        beam_end = kBeamSplit;
+        return false;
+    }
+    return true;
+}
+
+// Exact test of one triangle against the lane's `slots`.
+void test_exactly(uint index, uint slots) {
+    vec3 a, b, c;
+    uint primitive;
+    beam_triangle(index, a, b, c, primitive);
+    // Not in directions outside of the triangle's own rectangle: bounds on the edge functions grow
+    // with the beam and are poor for triangles much smaller than it.
+    vec2 lower, upper;
+    footprint(a, b, c, lower, upper);
+    [[unroll]] for (uint k = 0; k < kSlots; ++k) {
+        if (point_u[k] < lower.x || point_u[k] > upper.x ||
+            point_v[k] < lower.y || point_v[k] > upper.y)
+            slots &= ~(1u << k);
+    }
+    if (slots != 0) {
+        while (true) {
+            const uint k = findLSB(slots);
+            slots &= slots - 1u;
+            const vec3 p = beam_point(tile_point(beam_tile, k));
+            Segment segment;
+            if (kDirectional)
+                segment = directional_segment(p, beam_light);
+            else
+                segment = point_segment(p, beam_light);
+            if (occludes(segment, a, b, c)) beam_occluded |= 1u << k;
+            ++beam_exact_tests;
+            if (slots == 0) break;
+        }
+    }
+}
+
+// Tests up to one triangle per lane against the group.
+void beam_test_triangles(uint index, bool used) {
+    Candidate mine;
+    uint verdict = kMiss;
+    if (used) {
+        vec3 a, b, c;
+        uint primitive;
+        beam_triangle(index, a, b, c, primitive);
+        verdict = classify(a, b, c, mine);
+        const bool receives = (primitive_bit(primitive) & beam_primitives) != 0;
+        mine.receiver = receives ? primitive : kNoPrimitive;
+        if (verdict == kCovers && receives) verdict = kMeets;
+    }
+    if (subgroupAny(verdict == kCovers)) {
+        beam_occluded |= beam_group;
+        beam_finished = true;
+        const uint by = subgroupShuffle(index, subgroupBallotFindLSB(subgroupBallot(verdict == kCovers)));
+        if (!subgroupAny(beam_recent == by)) {
+            if (beam_recent_count % kLanes == lane()) beam_recent = by;
+            ++beam_recent_count;
+        }
+        return;
+    }
+    uvec4 candidates = subgroupBallot(verdict == kMeets);
+    if (candidates.xy == uvec2(0)) return;
+    while (true) {
+        uint from;
+        if (candidates.x != 0) {
+            from = findLSB(candidates.x);
+            candidates.x &= candidates.x - 1u;
+        } else if (kLanes > 32 && candidates.y != 0) {
+            from = 32 + findLSB(candidates.y);
+            candidates.y &= candidates.y - 1u;
+        } else {
+            break;
+        }
+        ++beam_steps;
+        uint hit, doubtful;
+        const uint index_from = subgroupShuffle(index, from);
+        test_points(broadcast(mine, from), hit, doubtful);
+        beam_occluded |= hit & beam_group;
+        doubtful &= beam_group & ~beam_occluded;
+        if (doubtful != 0) test_exactly(index_from, doubtful);
+    }
+    beam_finished = !subgroupAny((beam_group & ~beam_occluded) != 0);
+}
+
+// Answers one tile. `origin` is the light, or, for a directional light, a point near the scene;
+// `size` is the order of distances from there.
+TileAnswer answer_tile(uint tile, vec3 origin, float size) {
+    beam_tile = tile;
+    beam_origin = origin;
+    beam_scale = scale_for(size);
+    beam_occluded = beam_steps = beam_nodes = beam_triangles = beam_exact_tests = 0;
+    TileAnswer answer = TileAnswer(0, 0, 0, 0, 0);
+    uint todo = 0, primitives = 0;
+    [[unroll]] for (uint k = 0; k < kSlots; ++k) {
+        const uint point = tile_point(tile, k);
+        point_primitive[k] = beam_primitive(point);
+        point_d[k] = (beam_point(point) - origin) * beam_scale;
+        if (point_primitive[k] != kNoPrimitive) {
+            primitives |= primitive_bit(point_primitive[k]);
+            const vec3 size = abs(point_d[k]);
+            if (kDirectional || max(max(size.x, size.y), size.z) > kTinyDistance)
+                todo |= 1u << k;
+            else
+                answer.deferred |= 1u << k;
+        }
+    }
+    beam_primitives = subgroupOr(primitives);
+    float limit = kHuge;  // length of a group's sides
+    beam_halvings = 0;
+    // Guarded: drivers may run the body of a loop that has nothing to do.
+    if (subgroupAny(todo != 0)) {
+        while (true) {
+            if (answer.groups == kRoundLimit) {
+                answer.deferred |= todo;
+                answer.ends |= 1u << kBeamRoundLimit;
+                break;
+            }
+            beam_end = kBeamFinished;
+            beam_finished = false;
+            beam_group = take_group(todo, beam_light, limit);
+            todo &= ~beam_group;
+            ++answer.groups;
+            beam_group_triangles = 0;
+            // What covered a tile lately may well cover this one.
+            if (beam_recent_count > 0) beam_test_triangles(beam_recent, beam_recent != 0xffffffffu);
+            if (!beam_finished) beam_walk();
+            if (beam_end == kBeamSplit) {
+                // Thinner beams meet fewer triangles, and fewer points ask about each.
+                const vec2 extent = beam.upper - beam.lower;
+                limit = 0.25 * max(extent.x, extent.y);
+                ++beam_halvings;
+                todo |= beam_group & ~beam_occluded;
+            } else if (beam_end != kBeamFinished) {
+                answer.deferred |= beam_group & ~beam_occluded;
+                answer.ends |= 1u << beam_end;
+            }
+            if (!subgroupAny(todo != 0)) break;
+        }
+    }
+    answer.occluded = beam_occluded;
+    answer.exact_tests = beam_exact_tests;
+    return answer;
+}
+
+#endif

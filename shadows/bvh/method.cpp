@@ -1,0 +1,132 @@
+#include "shadows/bvh/method.hpp"
+
+#include <algorithm>
+
+namespace shadows::bvh {
+namespace {
+
+using structures::Parameter;
+using structures::Samples;
+using structures::Settings;
+using structures::geometry::Light;
+using structures::geometry::TriangleMesh;
+using taskpool::gpu::Recorder;
+
+std::vector<Parameter> make_parameters() {
+    const QueryConfig defaults;
+    std::vector<Parameter> all = tree_parameters();
+    const Parameter query[] = {
+        {"query", std::string("beam"), "how points walk the tree", {"beam", "packet", "lane"}},
+        {"statistics", false, "count nodes and triangles per point (slower)"},
+        {"stack", std::int64_t{defaults.stack}, "stack entries of a beam or packet", {}, 1, 32},
+        {"list", std::int64_t{defaults.list}, "triangles a beam collects at a time", {}, 64, 4096},
+        {"split", std::int64_t{defaults.split}, "triangles before a group is halved", {}, 1},
+        {"rounds", std::int64_t{defaults.rounds}, "groups a tile may split into", {}, 1, 256},
+    };
+    all.insert(all.end(), std::begin(query), std::end(query));
+    return all;
+}
+
+std::span<const Parameter> parameters() {
+    static const std::vector<Parameter> all = make_parameters();
+    return all;
+}
+
+QueryConfig query_config(const Settings& settings) {
+    const std::string& kind = settings.text("query");
+    QueryConfig config;
+    config.kind = kind == "lane"     ? QueryKind::lane
+                  : kind == "packet" ? QueryKind::packet
+                                     : QueryKind::beam;
+    config.statistics = settings.boolean("statistics");
+    config.stack = static_cast<std::uint32_t>(settings.integer("stack"));
+    config.list = static_cast<std::uint32_t>(settings.integer("list"));
+    config.split = static_cast<std::uint32_t>(settings.integer("split"));
+    config.rounds = static_cast<std::uint32_t>(settings.integer("rounds"));
+    return config;
+}
+
+std::unique_ptr<Method> create(taskpool::gpu::Device& device, const Settings& settings) {
+    return std::make_unique<BvhMethod>(device, settings);
+}
+
+}  // namespace
+
+BvhMethod::BvhMethod(taskpool::gpu::Device& device, const Settings& settings)
+    : device_(device),
+      config_(query_config(settings)),
+      query_(device, config_),
+      source_(device, settings),
+      wide_(device),
+      times_(device, 2) {}
+
+void BvhMethod::prepare(const TriangleMesh& mesh) { source_.prepare(mesh); }
+
+Samples BvhMethod::build(const Light& light) {
+    light_ = light;
+    double milliseconds = source_.build();
+    wide_.prepare(source_.capacity());
+    const structures::bvh::wide::BinaryTree binary = source_.tree();
+    for (bool first = true; first || wide_.pending() > 0; first = false) {
+        times_.clear();
+        Recorder recorder(device_);
+        recorder.timestamp(times_, "begin");
+        if (first)
+            wide_.record(recorder, binary);
+        else
+            wide_.record_rest(recorder, binary);
+        recorder.timestamp(times_, "end");
+        device_.run(recorder);
+        milliseconds += times_.milliseconds("begin", "end");
+    }
+    Samples samples = source_.counters();
+    samples.push_back({"build_ms", milliseconds, "ms"});
+    samples.push_back({"nodes", double(wide_.header().node_count)});
+    return samples;
+}
+
+Samples BvhMethod::query(const Points& points, Visibility& visible) {
+    query_.prepare(points.count());
+    times_.clear();
+    Recorder recorder(device_);
+    recorder.timestamp(times_, "begin");
+    query_.record(recorder, wide_.tree(), points.address(), points.count(), light_);
+    recorder.timestamp(times_, "end");
+    device_.run(recorder);
+    visible = query_.visibility();
+    const QueryStatus status = query_.status();
+    Samples samples{{"query_ms", times_.milliseconds("begin", "end"), "ms"},
+                    {"incomplete", double(status.incomplete)},
+                    {"deferred_points", double(status.deferred_points)}};
+    if (config_.statistics) {
+        double nodes = 0, triangles = 0;
+        std::uint32_t most = 0;
+        for (const PointCost& cost : query_.costs()) {
+            nodes += cost.nodes;
+            triangles += cost.triangles;
+            most = std::max(most, cost.nodes);
+        }
+        const double count = std::max(points.valid_count(), 1u);
+        samples.push_back({"visited_nodes_mean", nodes / count});
+        samples.push_back({"visited_nodes_max", double(most)});
+        samples.push_back({"tested_triangles_mean", triangles / count});
+        samples.push_back({"exact_tests_mean", status.exact_tests / count});
+        samples.push_back({"groups", double(status.groups)});
+    }
+    return samples;
+}
+
+std::vector<float> BvhMethod::heat() {
+    std::vector<float> nodes;
+    for (const PointCost& cost : query_.costs()) nodes.push_back(float(cost.nodes));
+    return nodes;
+}
+
+std::span<const MethodRow> rows() {
+    static const MethodRow all[] = {
+        {"bvh", "any-hit in an 8-wide BVH on the GPU, exact leaf test", &parameters, &create},
+    };
+    return all;
+}
+
+}  // namespace shadows::bvh

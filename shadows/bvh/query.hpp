@@ -1,0 +1,82 @@
+// Shadow query over a wide BVH: for each G-buffer point, is the segment to the light free?
+//
+//     Query query(device, {.kind = QueryKind::beam});
+//     query.prepare(points.count());
+//     query.record(recorder, wide_builder.tree(), points.address(), points.count(), light);
+//     device.run(recorder);
+//     Visibility visible = query.visibility();
+//     assert(query.status().incomplete == 0);
+//
+// All kinds end in the same exact test per point (shadows/occlusion.glsl) and give the same bits:
+//   lane    one segment per lane
+//   packet  a subgroup's segments share one stack
+//   beam    a subgroup owns a tile of 16 x 16 points and walks the tree with the tile's frustum
+// What packet and beam cannot finish within their limits is left to a per-point walk, recorded
+// behind them as an indirect dispatch; nothing is dropped, and the status counts what happened.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "shadows/bvh/query_shared.h"
+#include "shadows/points.hpp"
+#include "structures/bvh/wide/wide.hpp"
+#include "structures/geometry/light.hpp"
+#include "taskpool/gpu/recorder.hpp"
+
+namespace shadows::bvh {
+
+enum class QueryKind { lane, packet, beam };
+
+struct QueryConfig {
+    QueryKind kind = QueryKind::beam;
+    bool statistics = false;
+    // Limits of packet and beam; small ones force the per-point walk.
+    std::uint32_t stack = 32;         ///< entries of the traversal stack
+    std::uint32_t list = 256;         ///< triangles collected before they are processed
+    std::uint32_t steps = 1'000'000;  ///< loop iterations of one traversal
+    std::uint32_t rounds = 64;        ///< groups that the points of one tile may fall into
+    std::uint32_t split = 384;        ///< triangles a group may meet before it is halved
+    // Limits of the per-point walk.
+    std::uint32_t point_stack = 32;
+    std::uint32_t point_steps = 10'000'000;
+    bool operator==(const QueryConfig&) const = default;
+};
+
+class Query {
+  public:
+    Query(taskpool::gpu::Device& device, const QueryConfig& config);
+
+    /// Allocates for up to `point_count` points.
+    void prepare(std::uint32_t point_count);
+    std::size_t memory_bytes() const;
+
+    /// Records one query: `points` is the address of four planes of `point_count` words (Points).
+    /// Submits nothing. Throws std::invalid_argument if more points were not prepared for.
+    void record(taskpool::gpu::Recorder& recorder, const structures::bvh::wide::WideTree& tree,
+                std::uint64_t points, std::uint32_t point_count,
+                const structures::geometry::Light& light);
+
+    /// Of the last finished query.
+    Visibility visibility() const;
+    QueryStatus status() const;
+    /// With statistics: per point, nodes visited and triangles tested by the traversals it took
+    /// part in.
+    std::vector<PointCost> costs() const;
+
+  private:
+    struct Kernels {
+        taskpool::gpu::Kernel query, deferred;
+    };
+    const Kernels& kernels(bool directional);
+    taskpool::gpu::Kernel kernel(bool directional, bool deferred) const;
+
+    taskpool::gpu::Device& device_;
+    QueryConfig config_;
+    std::array<Kernels, 2> kernels_;  ///< point, directional; compiled when first needed
+    taskpool::gpu::Buffer visible_, deferred_, tiles_, costs_, status_, scratch_;
+    std::uint32_t point_count_ = 0;
+};
+
+}  // namespace shadows::bvh

@@ -1,0 +1,48 @@
+// What C++ and the kernels of the BVH shadow query share.
+#ifndef SHADOWS_BVH_QUERY_SHARED_H
+#define SHADOWS_BVH_QUERY_SHARED_H
+
+#ifdef __cplusplus
+#include <cstddef>
+
+#include "taskpool/gpu/shared_types.h"
+
+namespace shadows::bvh {
+using namespace taskpool::gpu::shared_types;
+#define GROVE_CONSTANT inline constexpr
+#else
+#define GROVE_CONSTANT const
+#endif
+
+// Counters of one query. Every tile, and every point that is left over, ends in one of these ways.
+struct QueryStatus {
+    uint finished_tiles;   // answered by the kernel of the query itself
+    uint stack_full;       // traversals given up because their stack was full
+    uint step_limit;       // traversals given up because they took too many steps
+    uint round_limit;      // tiles whose points fell into too many groups
+    uint deferred_points;  // points left to the per-point walk for one of these reasons
+    uint incomplete;       // points that even the per-point walk did not finish: must be 0
+    uint exact_tests;      // with statistics: point-triangle pairs decided by the exact test
+    uint groups;           // with statistics: groups of points that walked the tree
+    // Tiles with deferred points: a list, walked by an indirect dispatch.
+    uint deferred_groups_x;
+    uint deferred_groups_y;
+    uint deferred_groups_z;
+    uint next_tile;
+};
+GROVE_CONSTANT uint kDeferredOffset = 32u;
+
+// With statistics, per point.
+struct PointCost {
+    uint nodes;
+    uint triangles;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(QueryStatus) == 48);
+static_assert(offsetof(QueryStatus, deferred_groups_x) == kDeferredOffset);
+static_assert(sizeof(PointCost) == 8);
+}  // namespace shadows::bvh
+#endif
+#undef GROVE_CONSTANT
+#endif
