@@ -30,7 +30,7 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
     // A chunk has less than 2 * kChunkPoints points. The scan of a transition over a thousand times
     // as many takes as long again.
     const std::uint32_t chunk = 2 * kChunkPoints / device.subgroup_size();
-    return {sizeof(Task), 2 * chunk + 64, {{16, config.leaf_size}}};
+    return {sizeof(Task), 2 * chunk + 128, {{16, config.leaf_size}}};
 }
 
 std::size_t node_capacity(std::size_t points) { return std::max<std::size_t>(2 * points, 1); }
@@ -48,12 +48,11 @@ BallTreeBuild::BallTreeBuild(gpu::Device& device, const Config& config)
             client_spec(device, config), config.pool) {}
 
 std::size_t BallTreeBuild::required_bytes(std::size_t triangles) const {
-    const std::size_t mesh = triangles * (sizeof(glm::uvec3) + 3 * sizeof(glm::vec3));
     const std::size_t output =
         node_capacity(triangles) * sizeof(BallNode) + triangles * sizeof(BallPoint);
     const std::size_t scratch =
         triangles * sizeof(BallPoint) + gather_count(triangles, config_) * sizeof(Gather);
-    return mesh + output + scratch +
+    return output + scratch +
            pool::Pool::required_bytes(*device_, client_spec(*device_, config_), config_.pool);
 }
 

@@ -37,8 +37,7 @@ class BallTreeBuild final : public taskpool::pool::Job {
     /// Throws std::invalid_argument if leaf_size is out of range.
     BallTreeBuild(taskpool::gpu::Device& device, const Config& config);
 
-    /// Bytes of building a mesh of that many triangles with three corners of its own each: mesh,
-    /// pool (before any growth), scratch and output.
+    /// Bytes of a build beside the uploaded mesh: pool (before any growth), scratch and output.
     std::size_t required_bytes(std::size_t triangle_count) const;
     /// Throws std::invalid_argument for a mesh of 2^31 or more triangles.
     void prepare(const geometry::TriangleMesh& mesh);

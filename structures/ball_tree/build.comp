@@ -144,6 +144,7 @@ void measure_chunk(Task task, uint begin, uint end) {
 
 void gather_corner(Task task, uint corner, uvec3 key) {
     const uvec3 most = subgroupMax(key);
+    pool_spend(3);
     if (!subgroupElect()) return;
     for (uint k = 0; k < 3; ++k)
         atomicMax(pool.client.gathers.at[gather_of(task.first)].bounds[3 * corner + k], most[k]);
@@ -196,6 +197,8 @@ void leaf_chunk(Task task, uint chunk, uint begin, uint end) {
         pool.client.nodes.at[task.node] = BallNode(center, farthest, task.first, task.count);
 }
 
+// Every loop tells pool_spend() of its iterations: a driver may cut loops beyond a limit, silently.
+
 void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
     const uint begin = task.first + chunk * kChunkPoints;
     const uint end =
@@ -206,7 +209,7 @@ void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
         case kPhasePartition: partition_chunk(task, begin, end); break;
         case kPhaseLeaf: leaf_chunk(task, chunk, begin, end); break;
     }
-    pool_spend((end - begin) / gl_SubgroupSize + 12);
+    pool_spend((end - begin) / gl_SubgroupSize + 1);
 }
 
 // ---- Transitions ----------------------------------------------------------------------------------
@@ -232,6 +235,7 @@ vec3 gathered_corner(Task task, uint corner) {
     uvec3 key;
     for (uint k = 0; k < 3; ++k)
         key[k] = pool.client.gathers.at[gather_of(task.first)].bounds[3 * corner + k];
+    pool_spend(3);
     return from_key((corner & 1) == 0 ? ~key : key);
 }
 
@@ -284,6 +288,7 @@ Task spawn_child(Task parent, uint child, out Start start) {
         pool.client.gathers.at[gather_of(task.first)].radius_squared = 0;
         for (uint k = 0; k < 12; ++k) pool.client.gathers.at[gather_of(task.first)].bounds[k] = 0;
     }
+    pool_spend(12);
     start = Start(leaf ? kPhaseLeaf : kPhaseMeasure, 0, chunk_count(task.count), 0);
     return task;
 }

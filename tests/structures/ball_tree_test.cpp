@@ -87,10 +87,10 @@ TEST_F(BallTree, EqualsItsReference) {
 }
 
 TEST_F(BallTree, DoesNotDependOnThePool) {
-    const TriangleMesh mesh = mixed(30'000, 5);
+    const TriangleMesh mesh = mixed(15'000, 5);
     const Tree expected = build_reference(mesh, 8);
     for (const pool::Policy policy : {pool::Policy::scan, pool::Policy::bitmap})
-        for (const std::uint32_t workgroups : {1u, 5u, 64u})
+        for (const std::uint32_t workgroups : {1u, 64u})
             for (const std::uint32_t budget : {1u << 30, 3000u}) {
                 SCOPED_TRACE(testing::Message() << workgroups << " workgroups, budget " << budget);
                 Config config;
