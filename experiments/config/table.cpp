@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cmath>
 
 namespace experiments::config {
@@ -95,10 +96,18 @@ std::optional<glm::vec3> Table::vector(const std::string& key) {
 }
 
 std::optional<std::filesystem::path> Table::path(const std::string& key) {
-    const auto value = text(key);
-    if (!value) return {};
+    const std::optional<std::string> value = text(key);
+    if (!value) return std::nullopt;
     if (value->empty()) fail(*node_.find(key), fmt::format("'{}' is empty; expected a path", key));
-    return (node_.find(key)->folder / *value).lexically_normal();
+    if ((*value)[0] != '$') return node_.find(key)->folder / *value;
+    // "$NAME/rest": where a collection of scenes lies differs between machines.
+    const std::size_t slash = std::min(value->find('/'), value->size());
+    const std::string name = value->substr(1, slash - 1);
+    const char* folder = std::getenv(name.c_str());
+    if (!folder)
+        fail(*node_.find(key), fmt::format("'{}' is {}, but the environment variable {} is not set",
+                                           key, *value, name));
+    return std::filesystem::absolute(folder + value->substr(slash));
 }
 
 std::vector<std::string> Table::unread() const {

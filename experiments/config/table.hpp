@@ -31,7 +31,8 @@ class Table {
                                         std::int64_t maximum);
     std::optional<double> real(const std::string& key);
     std::optional<glm::vec3> vector(const std::string& key);
-    /// A path, made absolute from the folder it was written in.
+    /// A path, made absolute from the folder it was written in; "$NAME/rest" starts from the folder
+    /// that the environment variable NAME holds.
     std::optional<std::filesystem::path> path(const std::string& key);
     /// Fails naming `key` unless `value` holds something.
     template <typename T>

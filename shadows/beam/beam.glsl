@@ -14,7 +14,7 @@
 // cannot decide go to the exact test. A walk that runs out of stack, steps or rounds defers its
 // points to the caller, who must answer them another way.
 //
-// The includer defines kDirectional, kStepLimit, kRoundLimit, kSplitTriangles, and includes device.glsl first.
+// The includer defines kDirectional, kLoopsAreCut, kStepLimit, kRoundLimit, kSplitTriangles, and includes device.glsl first.
 #ifndef SHADOWS_BEAM_BEAM_GLSL
 #define SHADOWS_BEAM_BEAM_GLSL
 #include "shadows/occlusion.glsl"
@@ -152,6 +152,8 @@ void beam_test_triangles(uint index, bool used) {
         test_points(broadcast(mine, from), hit, doubtful);
         beam_occluded |= hit & beam_group;
         doubtful &= beam_group & ~beam_occluded;
+        // The loop of the exact tests counts for all lanes, or not at all.
+        if (kLoopsAreCut && subgroupAny(doubtful != 0)) beam_steps += kSlots;
         if (doubtful != 0) test_exactly(index_from, doubtful);
     }
     beam_finished = !subgroupAny((beam_group & ~beam_occluded) != 0);

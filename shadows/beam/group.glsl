@@ -59,7 +59,7 @@ const float kTinyDistance = 1e-30;
 // An axis is good for all points of a group if none is further off it than this factor.
 const float kWidestSlope = 4.0;
 // A group splits at an empty interval of this share of its extent, at most this often.
-const float kGapShare = 0.35;
+const float kGapShare = 0.2;
 const uint kMaxGapSplits = 4u;
 // A group whose beam meets too many triangles is halved, at most this often in each direction.
 const uint kMaxHalvings = 4u;

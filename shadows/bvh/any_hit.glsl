@@ -1,10 +1,10 @@
 // Any-hit query of a wide BVH, one segment per lane.
 //
-//     BvhWalk walk = bvh_walk_begin();
+//     BvhWalk walk = bvh_walk_begin(step_limit);
 //     bool hit = bvh_occluded(tree, segment, own_primitive, walk);
 //     // walk.end says why the traversal ended; only kEndFinished makes `hit == false` an answer
 //
-// Needs constants kStackLimit and kStepLimit (see query.glsl). Each stack entry is a node's inner
+// Needs the constant kStackLimit (see query.glsl). Each stack entry is a node's inner
 // children that are still to be visited, so that the stack is no deeper than the tree.
 #ifndef SHADOWS_BVH_ANY_HIT_GLSL
 #define SHADOWS_BVH_ANY_HIT_GLSL
@@ -22,9 +22,10 @@ struct BvhView {
 struct BvhWalk {
     uint nodes;      // visited
     uint triangles;  // tested
+    uint steps;      // loop iterations that are left
     uint end;
 };
-BvhWalk bvh_walk_begin() { return BvhWalk(0, 0, kEndFinished); }
+BvhWalk bvh_walk_begin(uint step_limit) { return BvhWalk(0, 0, step_limit, kEndFinished); }
 
 const uint kLaneStack = 32u;
 
@@ -74,17 +75,17 @@ bool bvh_occluded(BvhView view, Segment segment, uint own_primitive, inout BvhWa
     uint stack[kLaneStack];
     uint depth = 0;
     uint entry = 1u;  // the root as the only child of a node that starts at 0
-    uint steps = 0;
     bool hit = false;
     while (true) {
         if ((entry & 0xffu) == 0) {
             if (depth == 0) break;
             entry = stack[--depth];
         }
-        if (++steps > kStepLimit) {
+        if (walk.steps == 0) {
             walk.end = kEndStepLimit;
             break;
         }
+        --walk.steps;
         const uint node = (entry >> 8) + findLSB(entry & 0xffu);
         entry &= entry - 1u;
         uint inner = 0, leaves = 0, base = 0;
@@ -106,7 +107,7 @@ bool bvh_occluded(BvhView view, Segment segment, uint own_primitive, inout BvhWa
                     triangle = leaf_first(link);
                     last = triangle + leaf_count(link);
                 }
-                ++steps;
+                walk.steps -= min(walk.steps, 1u);
                 ++walk.triangles;
                 const WideTriangle t = view.triangles.at[triangle++];
                 if (t.primitive != own_primitive && occludes(segment, t.a, t.b, t.c)) {

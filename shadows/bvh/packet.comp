@@ -11,17 +11,18 @@ bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout BvhW
     const WideHeader header = push.header.header;
     const SlabTest test = slab_test(header, segment);
     bool hit = false;
-    uint entry = header.node_count > 0 ? 1u : 0u, steps = 0;
+    uint entry = header.node_count > 0 ? 1u : 0u;
     stack_depth = 0;
     while (true) {
         if ((entry & 0xffu) == 0) {
             if (stack_depth == 0) break;
             entry = stack_pop();
         }
-        if (++steps > kStepLimit) {
+        if (walk.steps == 0) {
             walk.end = kEndStepLimit;
             break;
         }
+        --walk.steps;
         const uint node = (entry >> 8) + findLSB(entry & 0xffu);
         entry &= entry - 1u;
         const uvec4 loaded = push.nodes.at[node * kWidth + lane() % kWidth];
@@ -46,7 +47,7 @@ bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout BvhW
                     triangle = leaf_first(link);
                     last = triangle + leaf_count(link);
                 }
-                ++steps;
+                walk.steps -= min(walk.steps, 1u);
                 ++walk.triangles;
                 const WideTriangle t = push.triangles.at[triangle++];
                 if (has_bit(leaves, slot) && !hit && t.primitive != own_primitive)
@@ -70,7 +71,7 @@ bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout BvhW
 }
 
 void main() {
-    uint taken = 0, stack_full = 0, step_limit = 0, finished = 0;
+    uint taken = 0, stack_full = 0, step_limit = 0, finished = 0, steps = kStepLimit;
     while (true) {
         const uint tile = next_tile(taken);
         if (tile == kNoTile) break;
@@ -79,20 +80,15 @@ void main() {
             const uint point = tile_point(tile, k);
             const uint primitive = primitive_of(point);
             const bool asked = primitive != kNoPrimitive;
-            BvhWalk walk = bvh_walk_begin();
+            BvhWalk walk = bvh_walk_begin(steps);
             if (subgroupAny(asked)) {
-                const vec3 p = position_of(point);
-                Segment segment;
-                if (kDirectional)
-                    segment = directional_segment(p, push.light);
-                else
-                    segment = point_segment(p, push.light);
-                const bool hit = packet_occluded(segment, primitive, asked, walk);
+                const bool hit = packet_occluded(segment_of(point), primitive, asked, walk);
                 if (hit && asked) occluded |= 1u << k;
                 if (!hit && asked && walk.end != kEndFinished) deferred |= 1u << k;
                 stack_full += walk.end == kEndStackFull ? 1 : 0;
                 step_limit += walk.end == kEndStepLimit ? 1 : 0;
             }
+            steps = steps_after(walk.steps);
             if (kStatistics) push.costs.at[point] = PointCost(walk.nodes, walk.triangles);
         }
         store_tile(push.visible, tile, ~occluded);

@@ -49,7 +49,7 @@ Query::Query(taskpool::gpu::Device& device, const QueryConfig& config)
     config_.list = std::max(config_.list, 8 * device.subgroup_size());
     // A traversal that a driver would cut must end before, on its own account.
     if (const std::uint32_t limit = device.info().loop_limit; limit > 0) {
-        config_.steps = std::min(config_.steps, limit / 4);
+        config_.steps = std::min(config_.steps, limit / 2);
         config_.point_steps = std::min(config_.point_steps, limit / 2);
     }
 }
@@ -72,16 +72,16 @@ std::size_t Query::memory_bytes() const {
 }
 
 Kernel Query::kernel(bool directional, bool deferred) const {
-    const QueryKind kind = deferred ? QueryKind::lane : config_.kind;
-    const bool per_point = kind == QueryKind::lane;
+    const bool per_point = deferred || config_.kind == QueryKind::lane;
+    const char* shader = deferred ? "shadows/bvh/deferred.comp" : shader_of(config_.kind);
     const std::uint32_t tiles = launch(device_.info(), 1u).tiles_per_group;
-    return Kernel(device_, taskpool::gpu::find_shader(shadows_bvh_shaders(), shader_of(kind)),
+    return Kernel(device_, taskpool::gpu::find_shader(shadows_bvh_shaders(), shader),
                   {{1, directional},
                    {2, config_.statistics},
                    {3, per_point ? config_.point_stack : config_.stack},
                    {4, per_point ? config_.point_steps : config_.steps},
-                   {5, deferred ? 1u : tiles},
-                   {6, deferred},
+                   {5, tiles},
+                   {6, device_.info().loop_limit > 0},
                    {7, config_.list},
                    {8, config_.rounds},
                    {9, kTilePoints / device_.subgroup_size()},
@@ -92,7 +92,7 @@ const Query::Kernels& Query::kernels(bool directional) {
     Kernels& found = kernels_[directional];
     if (!found.query.handle()) {
         found.query = kernel(directional, false);
-        if (config_.kind != QueryKind::lane) found.deferred = kernel(directional, true);
+        found.deferred = kernel(directional, true);
     }
     return found;
 }
@@ -118,16 +118,15 @@ void Query::record(taskpool::gpu::Recorder& recorder, const structures::bvh::wid
                          point_count};
     recorder.fill(status_, 0);
     recorder.barrier();
-    // The counter of deferred tiles is the x of an indirect dispatch (x, 1, 1).
-    recorder.fill(status_, 1, kDeferredOffset + 4, 8);
+    // The counter of deferred tiles is the x of an indirect dispatch (x, slots, 1).
+    recorder.fill(status_, kTilePoints / device_.subgroup_size(), kDeferredOffset + 4, 4);
+    recorder.fill(status_, 1, kDeferredOffset + 8, 4);
     recorder.barrier();
     const std::uint32_t tiles = point_count / kTilePoints;
     recorder.dispatch(pair.query, push, launch(device_.info(), tiles).groups);
     recorder.barrier();
-    if (config_.kind != QueryKind::lane) {
-        recorder.dispatch_indirect(pair.deferred, push, status_, kDeferredOffset);
-        recorder.barrier();
-    }
+    recorder.dispatch_indirect(pair.deferred, push, status_, kDeferredOffset);
+    recorder.barrier();
 }
 
 Visibility Query::visibility() const {

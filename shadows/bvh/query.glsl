@@ -2,15 +2,16 @@
 #include "taskpool/gpu/device.glsl"
 #include "structures/bvh/wide/wide_node.glsl"
 #include "shadows/beam/points.glsl"
+#include "shadows/occlusion.glsl"
 #include "shadows/bvh/query_shared.h"
 layout(local_size_x_id = 0) in;
 
 layout(constant_id = 1) const bool kDirectional = false;
 layout(constant_id = 2) const bool kStatistics = false;
 layout(constant_id = 3) const uint kStackLimit = 64u;     // entries
-layout(constant_id = 4) const uint kStepLimit = 1000000u; // loop iterations of one traversal
+layout(constant_id = 4) const uint kStepLimit = 1000000u; // loop iterations of one traversal, or,
+layout(constant_id = 6) const bool kLoopsAreCut = false;  // with this, of the whole invocation
 layout(constant_id = 5) const uint kTilesPerGroup = 0xffffffffu;
-layout(constant_id = 6) const bool kDeferred = false;     // walk only what another kernel left over
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Status { QueryStatus at; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Costs { PointCost at[]; };
@@ -40,17 +41,25 @@ uint primitive_of(uint point) {
     return floatBitsToUint(push.points.at[3 * push.point_count + point]);
 }
 
+Segment segment_of(uint point) {
+    if (kDirectional) return directional_segment(position_of(point), push.light);
+    return point_segment(position_of(point), push.light);
+}
+
 // The next tile of this workgroup, or kNoTile. Tiles are handed out by a counter, since their costs
 // differ widely; `taken` counts them, so that drivers that cut long loops get short ones.
 uint next_tile(inout uint taken) {
     if (taken >= kTilesPerGroup) return kNoTile;
     ++taken;
-    if (kDeferred) return taken == 1 ? push.tiles.at[gl_WorkGroupID.x] : kNoTile;
     uint tile = 0;
     if (lane() == 0) tile = atomicAdd(push.status.at.next_tile, 1u);
     tile = subgroupBroadcastFirst(tile);
     return tile < push.point_count / kTilePoints ? tile : kNoTile;
 }
+
+// Steps that the next traversal may take, after one that left `steps`.
+// A loop runs as long as one lane needs it: the lane with the fewest left decides.
+uint steps_after(uint steps) { return kLoopsAreCut ? subgroupMin(steps) : kStepLimit; }
 
 // Leaves a tile's `slots` to the per-point walk, if there are any.
 void defer(uint tile, uint slots) {
@@ -59,12 +68,4 @@ void defer(uint tile, uint slots) {
     if (lane() == 0) push.tiles.at[atomicAdd(push.status.at.deferred_groups_x, 1u)] = tile;
     const uint count = subgroupAdd(bitCount(slots));
     if (lane() == 0) atomicAdd(push.status.at.deferred_points, count);
-}
-
-void count_status(uint stack_full, uint step_limit, uint incomplete) {
-    if (subgroupAny((stack_full | step_limit | incomplete) != 0)) {
-        atomicAdd(push.status.at.stack_full, stack_full);
-        atomicAdd(push.status.at.step_limit, step_limit);
-        atomicAdd(push.status.at.incomplete, incomplete);
-    }
 }

@@ -7,12 +7,14 @@
 
 #include <memory>
 
-#include "shadows/embree/scene.hpp"
 #include "shadows/embree/trace.hpp"
 #include "shadows/embree/workers.hpp"
 #include "shadows/method.hpp"
+#include "structures/embree/scene.hpp"
 
 namespace shadows::embree {
+
+using structures::embree::Quality;
 
 struct Config {
     /// Rays per call: 1, packets of 8 or 16, or streams of 64; 0: the faster packets on this host,
@@ -42,7 +44,7 @@ class EmbreeMethod final : public Method {
     Trace faster_packets(const PointArrays& points);
 
     Config config_;
-    Scene scene_;
+    structures::embree::Scene scene_;
     Workers workers_;
     float diagonal_ = 0;
     Trace trace_ = nullptr;  ///< null: width 0, not yet decided

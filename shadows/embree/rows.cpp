@@ -43,11 +43,8 @@ std::span<const Parameter> packet_parameters() {
 }
 
 Config common_config(const Settings& settings) {
-    const std::string& quality = settings.text("quality");
     Config config;
-    config.quality = quality == "low"    ? Quality::low
-                     : quality == "high" ? Quality::high
-                                         : Quality::medium;
+    config.quality = structures::embree::quality_from(settings.text("quality"));
     config.bias = static_cast<float>(settings.real("bias"));
     config.threads = static_cast<unsigned>(settings.integer("threads"));
     return config;

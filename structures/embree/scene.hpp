@@ -11,13 +11,16 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <type_traits>
 
 #include "structures/geometry/triangle_mesh.hpp"
 
-namespace shadows::embree {
+namespace structures::embree {
 
 enum class Quality { low, medium, high };
+/// From "low", "medium" or "high".
+Quality quality_from(std::string_view name);
 
 class Scene {
   public:
@@ -28,9 +31,9 @@ class Scene {
 
     /// Copies the non-degenerate triangles. Throws std::runtime_error when memory does not suffice.
     void load(const structures::geometry::TriangleMesh& mesh);
-    /// Builds the loaded mesh from scratch, with RTC_SCENE_FLAG_ROBUST, and returns the wall time
+    /// Builds the loaded mesh from scratch, `robust`: with RTC_SCENE_FLAG_ROBUST, and returns the wall time
     /// of committing geometry and scene, in milliseconds.
-    double build(Quality quality);
+    double build(Quality quality, bool robust = true);
     /// The built scene; null before build().
     RTCScene handle() const { return scene_.get(); }
     /// What Embree holds now, input buffers included.
@@ -57,4 +60,4 @@ class Scene {
     Owned<RTCScene, rtcReleaseScene> scene_;
 };
 
-}  // namespace shadows::embree
+}  // namespace structures::embree

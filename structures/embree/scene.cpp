@@ -1,4 +1,4 @@
-#include "shadows/embree/scene.hpp"
+#include "structures/embree/scene.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace shadows::embree {
+namespace structures::embree {
 namespace {
 
 RTCBuildQuality rtc_quality(Quality quality) {
@@ -45,6 +45,11 @@ bool count_memory(void* total, ssize_t bytes, bool) {
 
 }  // namespace
 
+Quality quality_from(std::string_view name) {
+    if (name == "low") return Quality::low;
+    return name == "high" ? Quality::high : Quality::medium;
+}
+
 Scene::Scene(unsigned threads) {
     // Builder threads start now, not within the first build.
     device_.reset(rtcNewDevice(fmt::format("threads={},start_threads=1", threads).c_str()));
@@ -78,10 +83,10 @@ void Scene::load(const structures::geometry::TriangleMesh& mesh) {
         if (!mesh.degenerate(i)) *target++ = mesh.triangles[i];
 }
 
-double Scene::build(Quality quality) {
+double Scene::build(Quality quality, bool robust) {
     scene_.reset();
     Owned<RTCScene, rtcReleaseScene> scene(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    if (robust) rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene.get(), rtc_quality(quality));
     Owned<RTCGeometry, rtcReleaseGeometry> geometry;
     if (triangle_count_ > 0) {
@@ -101,4 +106,4 @@ double Scene::build(Quality quality) {
     return std::chrono::duration<double, std::milli>(end - begin).count();
 }
 
-}  // namespace shadows::embree
+}  // namespace structures::embree
