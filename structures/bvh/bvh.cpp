@@ -16,7 +16,7 @@ namespace {
 using namespace taskpool;
 
 constexpr std::uint32_t kDeterministicLeafRange = 8;
-constexpr std::uint32_t kMaxSubgroup = 64;  // shared arrays of the kernel are laid out for it
+constexpr std::uint32_t kMaxLeafRange = 32;  // a set of lanes is one word there
 
 // The kernel's struct Task: 12 words of range and rule, 6 of bounds, and five boxes of keys.
 struct Task {
@@ -31,13 +31,13 @@ struct Task {
 static_assert(sizeof(Task) == 46 * 4);
 
 struct Client {
-    std::uint64_t primitives[2], nodes, order, scratch, input;
+    std::uint64_t primitives, order[2], nodes, scratch, input;
 };
 static_assert(sizeof(Client) == 48);
 
 std::size_t scratch_words(std::size_t triangles, std::uint32_t planes) {
     const std::size_t chunks = triangles / kChunkPrimitives + 1;
-    return chunks * (planes * (2 * kKeys + 1) + 1 + 4 * kKeys) + 2 * (chunks + 1);
+    return chunks * (planes * (2 * kKeys + 1) + 4 * kKeys) + 2 * (chunks + 1);
 }
 
 std::size_t node_count(std::size_t triangles) { return std::max<std::size_t>(2 * triangles, 1); }
@@ -56,12 +56,12 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
         {19, config.leaf_by_cost},
         {20, float(config.costs.traversal)},
         {21, float(config.costs.intersection)},
-        {22, config.deterministic ? std::min(lanes, kDeterministicLeafRange) : lanes},
+        {22, config.deterministic ? std::min(lanes, kDeterministicLeafRange)
+                              : std::min(lanes, kMaxLeafRange)},
         {23, config.split == Split::spatial_median},
         {24, config.max_depth},
-        {25, config.large_rounds},
-        {26, config.small_rounds},
-        {27, config.round_limit},
+        {25, config.large_looks},
+        {26, config.small_looks},
     };
     return spec;
 }
@@ -76,7 +76,7 @@ const Config& checked(const gpu::Device& device, const Config& config) {
             "max_leaf_size must be from 1 to 8, and at most the subgroup size");
     require(config.max_depth >= 33, "max_depth must be at least 33");
     require(config.costs.traversal >= 0 && config.costs.intersection > 0, "costs must be positive");
-    require(lanes <= kMaxSubgroup, "subgroups of more than 64 lanes are not supported");
+    require(config.large_looks >= 1 && config.small_looks >= 1, "looks must be at least 1");
     return config;
 }
 
@@ -93,7 +93,7 @@ std::size_t BvhBuild::output_bytes(std::size_t triangles) {
 }
 
 std::size_t BvhBuild::required_bytes(std::size_t triangles) const {
-    return output_bytes(triangles) + 2 * triangles * sizeof(Primitive) +
+    return output_bytes(triangles) + triangles * (sizeof(Primitive) + sizeof(uint)) +
            scratch_words(triangles, config_.planes) * 4 + sizeof(BuildInput) +
            pool::Pool::required_bytes(*device_, client_spec(*device_, config_), config_.pool);
 }
@@ -107,15 +107,16 @@ void BvhBuild::prepare(const geometry::TriangleMesh& mesh) {
     triangles_ = gpu::make_buffer<glm::uvec3>(*device_, mesh.triangles, "mesh triangles");
     const BuildInput input{positions_.address(), triangles_.address(), triangle_count_, 0};
     input_ = gpu::make_buffer<BuildInput>(*device_, std::span(&input, 1), "BVH build input");
-    for (gpu::Buffer& side : primitives_)
-        side = gpu::Buffer(*device_, count * sizeof(Primitive), "BVH build primitives");
+    primitives_ = gpu::Buffer(*device_, count * sizeof(Primitive), "BVH build primitives");
     nodes_ = gpu::Buffer(*device_, node_count(count) * sizeof(BvhNode), "BVH nodes");
     order_ = gpu::Buffer(*device_, count * sizeof(uint), "BVH order");
+    other_order_ = gpu::Buffer(*device_, count * sizeof(uint), "BVH build order");
     scratch_ = gpu::Buffer(*device_, scratch_words(count, config_.planes) * 4, "BVH build scratch");
 }
 
 void BvhBuild::release_scratch() {
-    for (gpu::Buffer& side : primitives_) side = {};
+    primitives_ = {};
+    other_order_ = {};
     scratch_ = {};
 }
 
@@ -133,9 +134,9 @@ void BvhBuild::record(gpu::Recorder& recorder) {
         recorder.barrier();
         first_launch_ = false;
     }
-    pool_.record(recorder, Client{{primitives_[0].address(), primitives_[1].address()},
+    pool_.record(recorder, Client{primitives_.address(),
+                                  {order_.address(), other_order_.address()},
                                   nodes_.address(),
-                                  order_.address(),
                                   scratch_.address(),
                                   input_.address()});
 }

@@ -29,7 +29,7 @@ enum class Split {
 struct Config {
     Split split = Split::binned_sah;
     std::uint32_t planes = 32;  ///< candidates, dealt to the three axes in turn
-    std::uint32_t large_rounds = 3, small_rounds = 1, round_limit = 64;
+    std::uint32_t large_looks = 2, small_looks = 1;
     std::uint32_t max_leaf_size = 4;  ///< 1 to 8
     bool leaf_by_cost = true;         ///< false: every range of at most max_leaf_size is a leaf
     CostModel costs;
@@ -82,7 +82,8 @@ class BvhBuild final : public taskpool::pool::Job {
     taskpool::gpu::Device* device_;
     Config config_;
     taskpool::pool::Pool pool_;
-    taskpool::gpu::Buffer positions_, triangles_, input_, primitives_[2], nodes_, order_, scratch_;
+    taskpool::gpu::Buffer positions_, triangles_, input_, primitives_, nodes_, order_, other_order_,
+        scratch_;
     std::uint32_t triangle_count_ = 0;
     bool first_launch_ = true;
 };

@@ -1,8 +1,15 @@
 #include "taskpool/gpu/recorder.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace taskpool::gpu {
+namespace {
+
+/// Kernels of one recording that are told apart when the device is lost.
+constexpr std::size_t kBreadcrumbs = 1024;
+
+}  // namespace
 
 Recorder::Recorder(Device& device) : device_(device) {
     VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
@@ -21,12 +28,14 @@ Recorder::~Recorder() {
 
 void Recorder::leave_breadcrumb(const std::string& name) {
     if (breadcrumbs_.size() == 0) {
-        const std::uint32_t none = 0;
-        breadcrumbs_ = Buffer(device_, sizeof(none), "breadcrumbs", Buffer::Place::host);
-        breadcrumbs_.write(&none, sizeof(none));
+        const std::vector<std::uint32_t> none(kBreadcrumbs, 0);
+        breadcrumbs_ = Buffer(device_, kBreadcrumbs * 4, "breadcrumbs", Buffer::Place::host);
+        breadcrumbs_.write(none.data(), kBreadcrumbs * 4);
     }
+    // A word of its own for each: kernels without a barrier between them must not race here.
+    if (kernels_.size() < kBreadcrumbs)
+        vkCmdFillBuffer(commands_, breadcrumbs_.handle(), kernels_.size() * 4, 4, 1);
     kernels_.push_back(name);
-    vkCmdFillBuffer(commands_, breadcrumbs_.handle(), 0, 4, std::uint32_t(kernels_.size()));
 }
 
 void Recorder::prepare(const Kernel& kernel, const void* push, std::uint32_t bytes) {
@@ -165,9 +174,11 @@ void Recorder::copy(const Image& source, VkImageAspectFlagBits aspect, const Buf
 }
 
 std::string Recorder::running_kernel() const {
-    std::uint32_t started = 0;
-    if (breadcrumbs_.size()) breadcrumbs_.read(&started, sizeof(started));
-    return started == 0 || started > kernels_.size() ? std::string() : kernels_[started - 1];
+    if (kernels_.empty()) return {};
+    const std::vector<std::uint32_t> started = read<std::uint32_t>(breadcrumbs_, kBreadcrumbs);
+    const auto last = std::find(started.rbegin(), started.rend(), 1u);
+    return last == started.rend() ? std::string()
+                                  : kernels_[std::size_t(started.rend() - last) - 1];
 }
 
 }  // namespace taskpool::gpu

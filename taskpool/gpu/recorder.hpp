@@ -101,7 +101,7 @@ class Recorder {
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
     std::vector<std::string> kernels_;   ///< in order of recording
     std::vector<const Image*> targets_;  ///< of the rendering under way
-    Buffer breadcrumbs_;                 ///< host-visible word: how many of `kernels_` were started
+    Buffer breadcrumbs_;                 ///< a host-visible word per kernel: 1 once started
 };
 
 }  // namespace taskpool::gpu

@@ -16,19 +16,17 @@
 layout(constant_id = 22) const uint kLeafRange = 8;
 layout(constant_id = 23) const bool kSpatialMedian = false;
 layout(constant_id = 24) const uint kMaxDepth = 64;
-/// Rounds of candidate planes: of ranges of more than kChunkPrimitives, and of smaller ones.
-layout(constant_id = 25) const uint kLargeRounds = 3;
-layout(constant_id = 26) const uint kSmallRounds = 1;
-layout(constant_id = 27) const uint kRoundLimit = 64;
+/// Looks at candidate planes: of ranges of more than kChunkPrimitives, and of smaller ones.
+layout(constant_id = 25) const uint kLargeLooks = 2;
+layout(constant_id = 26) const uint kSmallLooks = 1;
 
-const uint kNoPrimitive = 0xffffffffu;
 const uint kRuleHalve = 0;  // the first half goes left
 const uint kRulePlane = 1;  // centres up to `position` on `axis` go left
 
 struct Task {
     uint first, count;
     uint node, depth;
-    uint side;  // which half of the primitive buffer holds the range
+    uint side;  // which order holds the range
     KeyBox box;
     vec3 center_lower, center_upper;  // bounds of lower + upper of the primitives' boxes
     uint rule, axis;
@@ -44,32 +42,19 @@ pool_buffer(4) Scratch { uint words[]; };
 pool_buffer(8) Input { BuildInput data; };
 
 struct Client {
-    Primitives primitives[2];
+    Primitives primitives;  // by triangle
+    PoolUints order[2];     // of the primitives, from one half to the other; the first is the output
     Nodes nodes;
-    PoolUints order;
     Scratch scratch;  // of large tasks, then two words per chunk for chunk counts
     Input mesh;
 };
 
 #include "taskpool/pool/pool.glsl"
 
-Primitive load_primitive(uint side, uint place) {
-    Primitive primitive;
-    if (side == 0) primitive = pool.client.primitives[0].at[place];
-    else primitive = pool.client.primitives[1].at[place];
-    return primitive;
-}
-void store_primitive(uint side, uint place, Primitive primitive) {
-    if (side == 0) pool.client.primitives[0].at[place] = primitive;
-    else pool.client.primitives[1].at[place] = primitive;
-}
+float component(vec3 v, uint axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-/// Bits [from, to) of a ballot that are set.
-uint bits_between(uvec4 ballot, uint from, uint to) {
-    const uint64_t bits = packUint2x32(ballot.xy);
-    const uint64_t mask = (to >= 64 ? ~0ul : (1ul << to) - 1) & ~((1ul << from) - 1);
-    const uvec2 kept = unpackUint2x32(bits & mask);
-    return uint(bitCount(kept.x) + bitCount(kept.y));
+PoolUints order_of(uint side) {
+    return PoolUints(side == 0 ? uint64_t(pool.client.order[0]) : uint64_t(pool.client.order[1]));
 }
 
 #include "structures/bvh/build/planes.glsl"
@@ -85,11 +70,9 @@ void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
     switch (phase) {
         case kPhaseSetup: setup_chunk(begin, end); break;
         case kPhaseCompact: compact_chunk(begin, end); break;
-        case kPhasePlanes: planes_chunk(task, step, begin, end); break;
         case kPhaseCount: count_chunk(task, begin, end); break;
-        case kPhasePartition: partition_chunk(task, begin, end); break;
-        case kPhaseSmall: small_task(task); break;
         case kPhaseLeaves: build_leaves(task); break;
+        default: split_chunk(task, phase, step, begin, end);
     }
 }
 
@@ -100,7 +83,7 @@ Next finish_step(inout Task task, uint phase, uint step) {
         case kPhasePlanes: return after_planes(task, step);
         case kPhaseCount: return after_count(task, step);
         case kPhasePartition: return after_partition(task);
-        case kPhaseSmall: return split_task(task);
+        case kPhaseSmall: return after_small(task);
     }
     pool_progress(task.count);
     return next_end();

@@ -23,13 +23,12 @@ BVH_CONSTANT uint kPhaseSmall = 5;      // chooses a plane and partitions, in on
 BVH_CONSTANT uint kPhaseLeaves = 6;     // full SAH over a range that fits a subgroup
 
 BVH_CONSTANT uint kChunkPrimitives = 1024;  // in a chunk, and in a small task at most
-BVH_CONSTANT uint kSampleAll = 8192;        // primitives up to which the SAH looks at all
 BVH_CONSTANT uint kKeys = 6;                // of a box: see keys_of() in keys.glsl
 
-// A primitive on its way down: its box and its id in the mesh.
+// A triangle's box.
 struct Primitive {
     vec3 lower;
-    uint id;
+    uint valid;  // 0 if the triangle is degenerate
     vec3 upper;
     uint padding;
 };

@@ -19,9 +19,6 @@ struct KeyBox {
 KeyBox empty_keys() { return KeyBox(uvec3(0), uvec3(0)); }
 KeyBox keys_of(vec3 lower, vec3 upper) { return KeyBox(~ordered(lower), ordered(upper)); }
 KeyBox join(KeyBox a, KeyBox b) { return KeyBox(max(a.low, b.low), max(a.high, b.high)); }
-KeyBox keep_if(bool yes, KeyBox box) {
-    return KeyBox(mix(uvec3(0), box.low, bvec3(yes)), mix(uvec3(0), box.high, bvec3(yes)));
-}
 vec3 lower_of(KeyBox box) { return from_ordered(~box.low); }
 vec3 upper_of(KeyBox box) { return from_ordered(box.high); }
 bool is_empty(KeyBox box) { return box.high.x == 0; }
@@ -34,33 +31,19 @@ float half_area(vec3 lower, vec3 upper) {
 }
 float half_area(KeyBox box) { return is_empty(box) ? 0.0 : half_area(lower_of(box), upper_of(box)); }
 
-// ---- Over the subgroup, through shared memory: cheaper than a chain of subgroup reductions ---------
+/// The box if every bit of `mask` is set; the empty box if none is.
+KeyBox masked(uint mask, KeyBox box) { return KeyBox(box.low & mask, box.high & mask); }
 
-const uint kMaxRows = 24;
-shared uint reduce_rows[kMaxRows * 64];  // row-major; subgroups have at most 64 lanes
+KeyBox[4] no_boxes() {
+    return KeyBox[](empty_keys(), empty_keys(), empty_keys(), empty_keys());
+}
+const uint kReduceIterations = 8;  // of join_lanes() at most
 
-void store_row(uint row, uint key) { reduce_rows[row * gl_SubgroupSize + gl_SubgroupInvocationID] = key; }
-void store_rows(uint first, KeyBox box) {
-    for (uint k = 0; k < 3; ++k) {
-        store_row(first + k, box.low[k]);
-        store_row(first + 3 + k, box.high[k]);
+/// Joins the boxes of all lanes, for all lanes.
+void join_lanes(inout KeyBox boxes[4]) {
+    for (uint apart = gl_SubgroupSize / 2; apart > 0; apart /= 2) {
+        [[unroll]] for (uint k = 0; k < 4; ++k)
+            boxes[k] = join(boxes[k], KeyBox(subgroupShuffleXor(boxes[k].low, apart),
+                                             subgroupShuffleXor(boxes[k].high, apart)));
     }
-}
-/// Leaves each row's maximum in reduce_rows[row].
-void max_rows(uint rows) {
-    subgroup_sync();
-    for (uint begin = 0; begin < rows; begin += gl_SubgroupSize) {
-        const uint row = begin + gl_SubgroupInvocationID;
-        uint best = 0;
-        if (row < rows)
-            for (uint lane = 0; lane < gl_SubgroupSize; ++lane)
-                best = max(best, reduce_rows[row * gl_SubgroupSize + lane]);
-        subgroup_sync();
-        if (row < rows) reduce_rows[row] = best;
-        subgroup_sync();
-    }
-}
-KeyBox reduced(uint first) {
-    return KeyBox(uvec3(reduce_rows[first], reduce_rows[first + 1], reduce_rows[first + 2]),
-                  uvec3(reduce_rows[first + 3], reduce_rows[first + 4], reduce_rows[first + 5]));
 }

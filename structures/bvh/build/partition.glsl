@@ -8,37 +8,37 @@ bool goes_left(Task task, uint place, vec3 center) {
     return (task.axis == 0 ? center.x : task.axis == 1 ? center.y : center.z) <= task.position;
 }
 
-/// Splits [begin, end) of the task's range to places from `left` up and from `right` down, and grows
-/// the children's bounds in reduce_rows. Returns how many went left.
-uint move_range(Task task, uint begin, uint end, uint left, uint right) {
-    KeyBox box[2] = KeyBox[](empty_keys(), empty_keys());
-    KeyBox centers[2] = box;
+/// Splits [begin, end) of the task's range to places from `left` up and from `right` down. Returns how
+/// many went left; `boxes` become those of the left and the right primitives and of their centres, in
+/// the order of take_children().
+uint move_range(Task task, uint begin, uint end, uint left, uint right, out KeyBox boxes[4]) {
+    boxes = no_boxes();
     const uint left_begin = left;
     for (uint i = begin; i < end; i += gl_SubgroupSize) {
         const uint mine = i + gl_SubgroupInvocationID;
         const bool used = mine < end;
-        const Primitive primitive = load_primitive(task.side, min(mine, end - 1));
+        const uint id = order_of(task.side).at[min(mine, end - 1)];
+        const Primitive primitive = pool.client.primitives.at[id];
         precise vec3 center = primitive.lower + primitive.upper;
         const bool is_left = used && goes_left(task, mine, center);
         const bool is_right = used && !is_left;
-        const uvec4 lefts = subgroupBallot(is_left), rights = subgroupBallot(is_right);
-        const uint target = is_left ? left + subgroupBallotExclusiveBitCount(lefts)
-                                    : right - 1 - subgroupBallotExclusiveBitCount(rights);
-        if (used) store_primitive(1 - task.side, target, primitive);
-        left += subgroupBallotBitCount(lefts);
-        right -= subgroupBallotBitCount(rights);
+        const uvec4 lefts = subgroupBallot(is_left);
+        const uint lefts_before = subgroupBallotExclusiveBitCount(lefts);
+        const uint target = is_left ? left + lefts_before
+                                    : right - 1 - (gl_SubgroupInvocationID - lefts_before);
+        if (used) order_of(1 - task.side).at[target] = id;
+        const uint left_count = subgroupBallotBitCount(lefts);
+        left += left_count;
+        right -= min(end - i, gl_SubgroupSize) - left_count;
         const KeyBox keys = keys_of(primitive.lower, primitive.upper), key = keys_of(center, center);
-        box[0] = join(box[0], keep_if(is_left, keys));
-        box[1] = join(box[1], keep_if(is_right, keys));
-        centers[0] = join(centers[0], keep_if(is_left, key));
-        centers[1] = join(centers[1], keep_if(is_right, key));
+        const uint left_mask = is_left ? 0xffffffffu : 0, right_mask = is_right ? 0xffffffffu : 0;
+        boxes[0] = join(boxes[0], masked(left_mask, keys));
+        boxes[1] = join(boxes[1], masked(left_mask, key));
+        boxes[2] = join(boxes[2], masked(right_mask, keys));
+        boxes[3] = join(boxes[3], masked(right_mask, key));
     }
-    [[unroll]] for (uint side = 0; side < 2; ++side) {
-        store_rows(side * 2 * kKeys, box[side]);
-        store_rows(side * 2 * kKeys + kKeys, centers[side]);
-    }
-    max_rows(4 * kKeys);
-    pool_spend((end - begin) / gl_SubgroupSize + 4 * gl_SubgroupSize);
+    join_lanes(boxes);
+    pool_spend((end - begin) / gl_SubgroupSize + kReduceIterations);
     return left - left_begin;
 }
 
@@ -46,7 +46,8 @@ uint count_left(Task task, uint begin, uint end) {
     uint count = 0;
     for (uint i = begin; i < end; i += gl_SubgroupSize) {
         const uint mine = i + gl_SubgroupInvocationID;
-        const Primitive primitive = load_primitive(task.side, min(mine, end - 1));
+        const uint id = order_of(task.side).at[min(mine, end - 1)];
+        const Primitive primitive = pool.client.primitives.at[id];
         precise vec3 center = primitive.lower + primitive.upper;
         count += subgroupBallotBitCount(
             subgroupBallot(mine < end && goes_left(task, mine, center)));
@@ -57,50 +58,44 @@ uint count_left(Task task, uint begin, uint end) {
 
 // ---- Chunks of large tasks ------------------------------------------------------------------------
 
-/// A step is a round.
-void planes_chunk(Task task, uint round, uint begin, uint end) {
-    Plane planes[kRows];
-    make_planes(task, round, planes);
-    const uint passed = pass_primitives(task, begin, end, planes);
-    flush_planes(task.first, planes, passed);
-}
-
 void count_chunk(Task task, uint begin, uint end) {
     const uint count = count_left(task, begin, end);
     if (subgroupElect()) pool.client.scratch.words[chunk_word(begin, end)] = count;
 }
 
-void partition_chunk(Task task, uint begin, uint end) {
-    const uint left_before = pool.client.scratch.words[chunk_word(begin, end)];
-    const uint right_before = begin - task.first - left_before;
-    move_range(task, begin, end, task.first + left_before, task.first + task.count - right_before);
-    flush_rows(task.first, 4 * kKeys);
+void take_children(inout Task task, KeyBox boxes[4]) {
+    task.left_box = boxes[0];
+    task.left_centers = boxes[1];
+    task.right_box = boxes[2];
+    task.right_centers = boxes[3];
 }
 
-// ---- Whole small tasks ----------------------------------------------------------------------------
-
-/// The children's bounds, from four boxes of keys at reduce_rows[0].
-void take_children(inout Task task) {
-    task.left_box = reduced(0);
-    task.left_centers = reduced(kKeys);
-    task.right_box = reduced(2 * kKeys);
-    task.right_centers = reduced(3 * kKeys);
-}
-
-/// A whole task of at most one chunk.
-void small_task(inout Task task) {
-    const uint end = task.first + task.count;
-    const uint rounds = task.cost == 0 ? 0 : task.count > kRoundLimit ? kSmallRounds : 1;
-    for (uint round = 0; round < rounds; ++round) {
+/// A chunk of a large task's looks or of its partition, or a whole small task's looks and partition:
+/// together, so that there is one copy of each in the kernel.
+void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
+    const bool small = phase == kPhaseSmall;
+    const uint looks = phase == kPhasePlanes ? step + 1 : small && task.cost != 0 ? kSmallLooks : 0;
+    for (uint look = phase == kPhasePlanes ? step : 0; look < looks; ++look) {
         Plane planes[kRows];
-        make_planes(task, round, planes);
-        choose_plane(task, planes, pass_primitives(task, task.first, end, planes));
+        make_planes(task, look, planes);
+        pass_primitives(task, begin, end, planes);
+        if (small) choose_plane(task, planes);
+        else flush_planes(task.first, planes);
     }
-    task.left_count = move_range(task, task.first, end, task.first, end);
-    if (task.left_count == 0 || task.left_count == task.count) {
-        // The middle of the centres separated nothing: halve by place instead.
-        task.rule = kRuleHalve;
-        task.left_count = move_range(task, task.first, end, task.first, end);
+    if (phase == kPhasePlanes) return;
+
+    uint left = task.first, right = task.first + task.count;
+    if (!small) {
+        const uint left_before = pool.client.scratch.words[chunk_word(begin, end)];
+        left += left_before;
+        right -= begin - task.first - left_before;
     }
-    take_children(task);
+    KeyBox boxes[4];
+    uint left_count = move_range(task, begin, end, left, right, boxes);
+    if (!small) {
+        flush_boxes(task.first, boxes);
+        return;
+    }
+    task.left_count = left_count;
+    take_children(task, boxes);
 }

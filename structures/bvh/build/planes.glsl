@@ -18,38 +18,35 @@ struct Plane {
     uint left_count;
 };
 
-// Rounds of candidates; a task keeps the best plane of all it looks at.
-const uint kRoundEven = 0;     // evenly spaced inside the centres' bounds, on all axes in turn
-const uint kRoundCenters = 1;  // through centres of the range's primitives: dense where they are
-const uint kRoundRefine = 2;   // on the best plane's axis, within one even spacing of it
-
-/// Plane `id` of kPlanes of a round. All fractions are exact, so that every device makes the same.
-Plane make_plane(Task task, uint round, uint id) {
+/// Plane `id` of kPlanes of a look. The first look mixes evenly spaced planes inside the centres'
+/// bounds with planes through centres of the range's primitives, which are dense where those are; later
+/// looks refine around the best plane so far. Fractions are exact: every device makes the same planes.
+Plane make_plane(Task task, uint look, uint id) {
     Plane plane;
-    plane.axis = round == kRoundRefine ? task.axis : id % 3;
+    plane.axis = id % 3;
     plane.left = plane.right = empty_keys();
     plane.left_count = 0;
-    const uint planes_on_axis = (kPlanes - plane.axis + 2) / 3;
-    precise float extent = task.center_upper[plane.axis] - task.center_lower[plane.axis];
-    if (round == kRoundCenters) {
-        const uint place = uint((uint64_t(min(id, kPlanes - 1)) * 2 + 1) * task.count / (2 * kPlanes));
-        const Primitive primitive = load_primitive(task.side, task.first + place);
+    const uint even = kPlanes / 2;
+    if (look == 0 && id >= even) {
+        const uint turn = min(id, kPlanes - 1) - even;
+        const uint place = uint((uint64_t(turn) * 2 + 1) * task.count / (2 * (kPlanes - even)));
+        const uint mine = order_of(task.side).at[task.first + place];
+        const Primitive primitive = pool.client.primitives.at[mine];
         precise vec3 center = primitive.lower + primitive.upper;
-        plane.position = center[plane.axis];
-    } else if (round == kRoundRefine) {
-        const float spacing = float(65536 / (planes_on_axis + 1)) / 65536.0;
-        const float offset = float(int(131072 * (id + 1) / (kPlanes + 1)) - 65536) / 65536.0;
-        precise float fine = task.position + extent * spacing * offset;
-        plane.position = fine;
-    } else {
-        const float fraction = float(65536 * (id / 3 + 1) / (planes_on_axis + 1)) / 65536.0;
-        precise float coarse = task.center_lower[plane.axis] + extent * fraction;
-        plane.position = coarse;
+        plane.position = component(center, plane.axis);
+        return plane;
     }
+    const uint planes_on_axis = (even - plane.axis + 2) / 3;
+    const float spacing = float(65536 / (planes_on_axis + 1)) / 65536.0;
+    if (look > 0) plane.axis = task.axis;
+    precise float extent = component(task.center_upper - task.center_lower, plane.axis);
+    const float offset = look > 0 ? spacing * (float(int(131072 * (id + 1) / (kPlanes + 1)) - 65536) / 65536.0)
+                                  : float(65536 * (id / 3 + 1) / (planes_on_axis + 1)) / 65536.0;
+    const float origin = look > 0 ? task.position : component(task.center_lower, plane.axis);
+    precise float position = origin + extent * offset;
+    plane.position = position;
     return plane;
 }
-
-KeyBox masked(uint mask, KeyBox box) { return KeyBox(box.low & mask, box.high & mask); }
 
 /// Cost without the constant factors: area * count over both sides; infinite if one side is empty.
 float plane_cost(Plane plane, uint count) {
@@ -58,52 +55,45 @@ float plane_cost(Plane plane, uint count) {
     return plane.left_count == 0 || plane.left_count == count ? kInfinity : cost;
 }
 
-/// Groups of gl_SubgroupSize primitives of which large tasks look at one: their cost estimates are
-/// means over thousands all the same.
-uint sample_stride(Task task) { return task.count > kSampleAll ? 4 : 1; }
+const uint kUnroll = 4;  // primitives passed per iteration; the subgroup size is a multiple of it
 
-/// Passes the primitives of [begin, end) by the planes. Returns how many passed.
-uint pass_primitives(Task task, uint begin, uint end, inout Plane planes[kRows]) {
-    const uint stride = gl_SubgroupSize * sample_stride(task);
-    uint count = 0;
-    for (uint i = begin; i < end; i += stride) {
+/// Passes the primitives of [begin, end) by the planes.
+void pass_primitives(Task task, uint begin, uint end, inout Plane planes[kRows]) {
+    for (uint i = begin; i < end; i += gl_SubgroupSize) {
         const uint present = min(end - i, gl_SubgroupSize);
-        const Primitive primitive =
-            load_primitive(task.side, i + min(gl_SubgroupInvocationID, present - 1));
+        const uint mine = order_of(task.side).at[i + min(gl_SubgroupInvocationID, present - 1)];
+        const Primitive primitive = pool.client.primitives.at[mine];
         precise vec3 center = primitive.lower + primitive.upper;
         const KeyBox box = keys_of(primitive.lower, primitive.upper);
-        for (uint lane = 0; lane < present; ++lane) {
-            const vec3 place = vec3(subgroupShuffle(center.x, lane), subgroupShuffle(center.y, lane),
-                                    subgroupShuffle(center.z, lane));
-            const KeyBox passing =
-                KeyBox(uvec3(subgroupShuffle(box.low.x, lane), subgroupShuffle(box.low.y, lane),
-                             subgroupShuffle(box.low.z, lane)),
-                       uvec3(subgroupShuffle(box.high.x, lane), subgroupShuffle(box.high.y, lane),
-                             subgroupShuffle(box.high.z, lane)));
-            [[unroll]] for (uint row = 0; row < kRows; ++row) {
-                const uint axis = planes[row].axis;
-                const float value = axis == 0 ? place.x : axis == 1 ? place.y : place.z;
-                const uint left = value <= planes[row].position ? 0xffffffffu : 0;
-                planes[row].left = join(planes[row].left, masked(left, passing));
-                planes[row].right = join(planes[row].right, masked(~left, passing));
-                planes[row].left_count += left & 1;
+        for (uint first = 0; first < present; first += kUnroll) {
+            [[unroll]] for (uint k = 0; k < kUnroll; ++k) {
+                // Lanes from `present` on hold the last primitive again: it changes no box.
+                const uint lane = first + k;
+                const uint counted = lane < present ? 1 : 0;
+                const vec3 place = subgroupShuffle(center, lane);
+                const KeyBox passing = KeyBox(subgroupShuffle(box.low, lane), subgroupShuffle(box.high, lane));
+                [[unroll]] for (uint row = 0; row < kRows; ++row) {
+                    const uint left =
+                        component(place, planes[row].axis) <= planes[row].position ? 0xffffffffu : 0;
+                    planes[row].left = join(planes[row].left, masked(left, passing));
+                    planes[row].right = join(planes[row].right, masked(~left, passing));
+                    planes[row].left_count += left & counted;
+                }
             }
         }
-        count += present;
-        pool_spend(present + 1);
+        pool_spend(present / kUnroll + 2);
     }
-    return count;
 }
 
-/// Makes the best of all lanes' planes the task's, if it beats those of the rounds before. Equal
-/// costs: the earlier round, then the plane with the lowest id.
-void choose_plane(inout Task task, Plane planes[kRows], uint count) {
+/// Makes the best of all lanes' planes the task's, if it beats those of the looks before. Equal
+/// costs: the earlier look, then the plane with the lowest id.
+void choose_plane(inout Task task, Plane planes[kRows]) {
     float best = kInfinity;
     uint id = kNoPlane, axis = 0;
     float position = 0;
     [[unroll]] for (uint row = 0; row < kRows; ++row) {
         const uint mine = row * gl_SubgroupSize + gl_SubgroupInvocationID;
-        const float cost = mine < kPlanes ? plane_cost(planes[row], count) : kInfinity;
+        const float cost = mine < kPlanes ? plane_cost(planes[row], task.count) : kInfinity;
         if (cost < best) {
             best = cost;
             id = mine;
@@ -121,7 +111,7 @@ void choose_plane(inout Task task, Plane planes[kRows], uint count) {
     task.position = subgroupShuffle(position, lane);
 }
 
-void make_planes(Task task, uint round, out Plane planes[kRows]) {
+void make_planes(Task task, uint look, out Plane planes[kRows]) {
     [[unroll]] for (uint row = 0; row < kRows; ++row)
-        planes[row] = make_plane(task, round, row * gl_SubgroupSize + gl_SubgroupInvocationID);
+        planes[row] = make_plane(task, look, row * gl_SubgroupSize + gl_SubgroupInvocationID);
 }

@@ -1,8 +1,7 @@
 // Memory that the chunks of a large task share. Disjoint ranges of more than kChunkPrimitives begin in
 // different multiples of it, so where a range begins names its scratch: nothing is allocated.
 
-const uint kPassedWord = kPlanes * kPlaneWords;  // primitives that passed the planes
-const uint kChildWord = kPassedWord + 1;         // four boxes of keys: see take_children()
+const uint kChildWord = kPlanes * kPlaneWords;  // four boxes of keys: see move_range()
 const uint kScratchWords = kChildWord + 4 * kKeys;
 
 uint scratch_word(uint first) { return first / kChunkPrimitives * kScratchWords; }
@@ -20,17 +19,27 @@ void clear_scratch(uint first) {
     pool_spend(kScratchWords / gl_SubgroupSize);
 }
 
-/// Joins reduce_rows[0 .. rows) into the task's words from kChildWord on.
-void flush_rows(uint first, uint rows) {
-    for (uint k = gl_SubgroupInvocationID; k < rows; k += gl_SubgroupSize)
-        atomicMax(pool.client.scratch.words[scratch_word(first) + kChildWord + k], reduce_rows[k]);
+/// Joins the boxes, which all lanes know, into the task's words from kChildWord on.
+void flush_boxes(uint first, KeyBox boxes[4]) {
+    if (!subgroupElect()) return;
+    [[unroll]] for (uint i = 0; i < 4; ++i) {
+        const uint at = scratch_word(first) + kChildWord + i * kKeys;
+        [[unroll]] for (uint k = 0; k < 3; ++k) {
+            atomicMax(pool.client.scratch.words[at + k], boxes[i].low[k]);
+            atomicMax(pool.client.scratch.words[at + 3 + k], boxes[i].high[k]);
+        }
+    }
 }
 
-/// Brings the task's words from kChildWord on to reduce_rows.
-void fetch_rows(uint first, uint rows) {
-    for (uint k = gl_SubgroupInvocationID; k < rows; k += gl_SubgroupSize)
-        reduce_rows[k] = pool.client.scratch.words[scratch_word(first) + kChildWord + k];
-    subgroup_sync();
+/// The task's words from kChildWord on.
+void fetch_boxes(uint first, out KeyBox boxes[4]) {
+    [[unroll]] for (uint i = 0; i < 4; ++i) {
+        const uint at = scratch_word(first) + kChildWord + i * kKeys;
+        [[unroll]] for (uint k = 0; k < 3; ++k) {
+            boxes[i].low[k] = pool.client.scratch.words[at + k];
+            boxes[i].high[k] = pool.client.scratch.words[at + 3 + k];
+        }
+    }
 }
 
 /// Exclusive scan over the chunk words of a range; returns the sum.
@@ -50,8 +59,8 @@ uint scan_chunks(uint first, uint count) {
     return sum;
 }
 
-/// Joins this subgroup's planes into the task's, and `passed` to its count.
-void flush_planes(uint first, Plane planes[kRows], uint passed) {
+/// Joins this subgroup's planes into the task's.
+void flush_planes(uint first, Plane planes[kRows]) {
     [[unroll]] for (uint row = 0; row < kRows; ++row) {
         const uint id = row * gl_SubgroupSize + gl_SubgroupInvocationID;
         if (id >= kPlanes) break;
@@ -64,11 +73,10 @@ void flush_planes(uint first, Plane planes[kRows], uint passed) {
         }
         atomicAdd(pool.client.scratch.words[at + 12], planes[row].left_count);
     }
-    if (subgroupElect()) atomicAdd(pool.client.scratch.words[scratch_word(first) + kPassedWord], passed);
 }
 
-/// Fills the planes' boxes and counts with the task's; returns how many primitives passed.
-uint fetch_planes(uint first, inout Plane planes[kRows]) {
+/// Fills the planes' boxes and counts with the task's.
+void fetch_planes(uint first, inout Plane planes[kRows]) {
     [[unroll]] for (uint row = 0; row < kRows; ++row) {
         const uint id = min(row * gl_SubgroupSize + gl_SubgroupInvocationID, kPlanes - 1);
         const uint at = scratch_word(first) + id * kPlaneWords;
@@ -80,5 +88,4 @@ uint fetch_planes(uint first, inout Plane planes[kRows]) {
         }
         planes[row].left_count = pool.client.scratch.words[at + 12];
     }
-    return pool.client.scratch.words[scratch_word(first) + kPassedWord];
 }

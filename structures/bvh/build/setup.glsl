@@ -12,7 +12,7 @@ bool degenerate(vec3 a, vec3 b, vec3 c) {
 
 void setup_chunk(uint begin, uint end) {
     BuildInput mesh = pool.client.mesh.data;
-    KeyBox boxes = empty_keys(), centers = empty_keys();
+    KeyBox boxes[4] = no_boxes();
     uint valid_count = 0;
     for (uint i = begin; i < end; i += gl_SubgroupSize) {
         const uint mine = i + gl_SubgroupInvocationID;
@@ -23,32 +23,30 @@ void setup_chunk(uint begin, uint end) {
                        c = mesh.positions.at[corners.z];
             valid = !degenerate(a, b, c);
             const vec3 lower = min(min(a, b), c), upper = max(max(a, b), c);
-            store_primitive(0, mine, Primitive(lower, valid ? mine : kNoPrimitive, upper, 0));
+            pool.client.primitives.at[mine] = Primitive(lower, valid ? 1 : 0, upper, 0);
+            pool.client.order[0].at[mine] = mine;
             precise vec3 center = lower + upper;
             if (valid) {
-                boxes = join(boxes, keys_of(lower, upper));
-                centers = join(centers, keys_of(center, center));
+                boxes[0] = join(boxes[0], keys_of(lower, upper));
+                boxes[1] = join(boxes[1], keys_of(center, center));
             }
         }
         valid_count += subgroupBallotBitCount(subgroupBallot(valid));
     }
-    store_rows(0, boxes);
-    store_rows(kKeys, centers);
-    max_rows(2 * kKeys);
-    flush_rows(0, 2 * kKeys);
+    join_lanes(boxes);
+    flush_boxes(0, boxes);
     if (subgroupElect()) pool.client.scratch.words[chunk_word(begin, end)] = valid_count;
-    pool_spend(kChunkPrimitives / gl_SubgroupSize + 2 * gl_SubgroupSize);
+    pool_spend(kChunkPrimitives / gl_SubgroupSize + kReduceIterations);
 }
 
-/// Moves the valid primitives of a chunk to the other side, to where the scanned counts say.
+/// Lists the valid primitives of a chunk in order[0], from where the scanned counts say.
 void compact_chunk(uint begin, uint end) {
     uint target = pool.client.scratch.words[chunk_word(begin, end)];
     for (uint i = begin; i < end; i += gl_SubgroupSize) {
         const uint mine = i + gl_SubgroupInvocationID;
-        const Primitive primitive = load_primitive(0, min(mine, end - 1));
-        const bool valid = mine < end && primitive.id != kNoPrimitive;
+        const bool valid = mine < end && pool.client.primitives.at[min(mine, end - 1)].valid != 0;
         const uvec4 ballot = subgroupBallot(valid);
-        if (valid) store_primitive(1, target + subgroupBallotExclusiveBitCount(ballot), primitive);
+        if (valid) pool.client.order[0].at[target + subgroupBallotExclusiveBitCount(ballot)] = mine;
         target += subgroupBallotBitCount(ballot);
     }
     pool_spend(kChunkPrimitives / gl_SubgroupSize);

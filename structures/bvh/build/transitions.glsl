@@ -23,9 +23,10 @@ void set_rule(inout Task task) {
 
 /// The root's bounds have been gathered in scratch 0; goes on with its first step.
 Next start_root(inout Task task) {
-    fetch_rows(0, 2 * kKeys);
-    task.box = reduced(0);
-    const KeyBox centers = reduced(kKeys);
+    KeyBox boxes[4];
+    fetch_boxes(0, boxes);
+    task.box = boxes[0];
+    const KeyBox centers = boxes[1];
     if (task.count == 0) {
         if (subgroupElect())
             pool.client.nodes.at[0] = BvhNode(vec3(kInfinity), 0, vec3(-kInfinity), 0);
@@ -48,18 +49,17 @@ Next after_setup(inout Task task) {
 
 Next after_compact(inout Task task) {
     task.count = task.left_count;
-    task.side = 1;
     return start_root(task);
 }
 
-Next after_planes(inout Task task, uint round) {
+Next after_planes(inout Task task, uint look) {
     Plane planes[kRows];
-    make_planes(task, round, planes);
-    const uint passed = fetch_planes(task.first, planes);
-    choose_plane(task, planes, passed);
+    make_planes(task, look, planes);
+    fetch_planes(task.first, planes);
+    choose_plane(task, planes);
     clear_scratch(task.first);
     const uint chunks = chunks_of(task.count);
-    if (round + 1 < kLargeRounds) return next_step(kPhasePlanes, round + 1, chunks);
+    if (look + 1 < kLargeLooks) return next_step(kPhasePlanes, look + 1, chunks);
     return next_step(kPhaseCount, 0, chunks);
 }
 
@@ -81,9 +81,18 @@ Next split_task(inout Task task) {
     return next_spawn(2);
 }
 
+/// The middle of the centres may have separated nothing: the range is halved by place then.
+Next after_small(inout Task task) {
+    if (task.left_count != 0 && task.left_count != task.count) return split_task(task);
+    task.rule = kRuleHalve;
+    task.cost = 0;
+    return next_step(kPhaseSmall, 0, 1);
+}
+
 Next after_partition(inout Task task) {
-    fetch_rows(task.first, 4 * kKeys);
-    take_children(task);
+    KeyBox boxes[4];
+    fetch_boxes(task.first, boxes);
+    take_children(task, boxes);
     return split_task(task);
 }
 
