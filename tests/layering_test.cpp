@@ -54,11 +54,11 @@ std::vector<SourceFile> sources_below(const std::string& folder) {
     return files;
 }
 
-/// "path:line: text" of the lines that match.
+/// "path:line: text" of the lines that match outside a `//` comment.
 std::vector<std::string> matches(const SourceFile& file, const std::regex& pattern) {
     std::vector<std::string> found;
     for (std::size_t i = 0; i < file.lines.size(); ++i)
-        if (std::regex_search(file.lines[i], pattern))
+        if (std::regex_search(file.lines[i].substr(0, file.lines[i].find("//")), pattern))
             found.push_back(file.path + ":" + std::to_string(i + 1) + ": " + file.lines[i]);
     return found;
 }

@@ -56,8 +56,8 @@ class BallTreeBuilder final : public Builder {
                 {"depth_max", depth_max},
                 {"depth_mean", leaves > 0 ? depth_sum / leaves : 0},
                 {"leaf_size_mean", leaves > 0 ? double(tree.points.size()) / leaves : 0},
+                {"degenerate", double(mesh_->triangle_count() - tree.points.size())},
                 {"tasks", double(status.state.spawned) + 1},
-                {"launches", double(status.launches)},
                 {"pool_peak", double(status.state.peak_live)}};
     }
     std::vector<std::string> validate() override {

@@ -1,3 +1,4 @@
+// Traces as text; pool.hpp describes the format.
 #include <fmt/format.h>
 
 #include <algorithm>
