@@ -111,7 +111,7 @@ bool spawn_next_child(inout TaskInfo info, inout Task task) {
     if (info.spawn_next == 0) {
         info.state = kStateRun;
         if (info.join == 0) {
-            finish_task(info, task);  // only a spawn of no child comes here: see below
+            finish_task(info, task);  // its slot was no child's: there was none, or child 0 waits
             return true;
         }
         if (subgroupElect()) {
