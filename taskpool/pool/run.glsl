@@ -176,8 +176,8 @@ void main() {
     uint idle = 0;
     uint since_clock = 0;
 
-    while (pool_iterations + kChunkIterations < pool.iteration_budget) {
-        ++pool_iterations;
+    while (pool_iterations + kChunkIterations + kTurnIterations < pool.iteration_budget) {
+        pool_iterations += kTurnIterations;
         if (++since_clock >= 64) {
             since_clock = 0;
             if (microseconds_since(pool_began) > pool.time_budget_us) break;
