@@ -74,7 +74,7 @@ void take_children(inout Task task, KeyBox boxes[4]) {
 /// together, so that there is one copy of each in the kernel.
 void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
     const bool small = phase == kPhaseSmall;
-    const uint looks = phase == kPhasePlanes ? step + 1 : small && task.cost != 0 ? kSmallLooks : 0;
+    const uint looks = phase == kPhasePlanes ? step + 1 : small && task.looks ? kSmallLooks : 0;
     for (uint look = phase == kPhasePlanes ? step : 0; look < looks; ++look) {
         Plane planes[kRows];
         make_planes(task, look, planes);
@@ -91,7 +91,7 @@ void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
         right -= begin - task.first - left_before;
     }
     KeyBox boxes[4];
-    uint left_count = move_range(task, begin, end, left, right, boxes);
+    const uint left_count = move_range(task, begin, end, left, right, boxes);
     if (!small) {
         flush_boxes(task.first, boxes);
         return;
