@@ -70,7 +70,6 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
         {24, config.max_depth},
         {25, config.large_looks},
         {26, config.small_looks},
-        {27, config.even_planes},
     };
     return spec;
 }
@@ -85,7 +84,6 @@ const Config& checked(const gpu::Device& device, const Config& config) {
             "max_leaf_size must be from 1 to 8, and at most the subgroup size");
     require(config.max_depth >= 33, "max_depth must be at least 33");
     require(config.costs.traversal >= 0 && config.costs.intersection > 0, "costs must be positive");
-    require(config.even_planes <= config.planes, "even_planes must be at most planes");
     require(config.large_looks >= 1 && config.large_looks <= 8, "large_looks must be from 1 to 8");
     require(config.small_looks >= 1 && config.small_looks <= 8, "small_looks must be from 1 to 8");
     return config;

@@ -17,8 +17,8 @@ layout(constant_id = 22) const uint kLeafRange = 8;
 layout(constant_id = 23) const bool kSpatialMedian = false;
 layout(constant_id = 24) const uint kMaxDepth = 64;
 /// Looks at candidate planes: of ranges of more than kChunkPrimitives, and of smaller ones.
-layout(constant_id = 25) const uint kLargeLooks = 1;
-layout(constant_id = 26) const uint kSmallLooks = 1;
+layout(constant_id = 25) const uint kLargeLooks = 2;
+layout(constant_id = 26) const uint kSmallLooks = 2;
 
 const uint kRuleHalve = 0;  // the first half goes left
 const uint kRulePlane = 1;  // centres up to `position` on `axis` go left

@@ -1,5 +1,5 @@
-// Choosing planes and partitioning ranges, in chunks of large tasks and whole for small ones. Which side a
-// primitive goes to depends on nothing but its box (or, to halve a range, on its place), and it
+// Choosing planes and partitioning ranges, in chunks of large tasks and whole for small ones. Which side
+// a primitive goes to depends on nothing but its box (or, to halve a range, on its place), and it
 // lands at a place that depends on nothing but the order before: builds are deterministic.
 
 /// Side test of a task's split, evaluated the same way wherever it is needed.

@@ -6,7 +6,6 @@
 
 layout(constant_id = 16) const uint kPlanes = 32;  // over the three axes
 layout(constant_id = 17) const uint kRows = 4;     // planes per lane: kPlanes / subgroup size, up
-layout(constant_id = 27) const uint kEven = 32;    // of the first look's planes: evenly spaced ones
 const uint kPlaneWords = 2 * kKeys + 1;            // keys of the left and the right box, left count
 const uint kNoPlane = 0xffffffffu;
 const float kInfinity = 1.0 / 0.0;
@@ -24,17 +23,17 @@ float fraction(uint numerator, uint denominator) {
     return float(65536 * numerator / denominator) / 65536.0;
 }
 
-/// Plane `id` of kPlanes of a look. The first look mixes evenly spaced planes inside the centres'
-/// bounds with planes through centres of the range's primitives, which are dense where those are; later
-/// looks lie around each axis' best plane so far, ever closer.
+/// Plane `id` of kPlanes of a look. The first look's are evenly spaced inside the centres' bounds; the
+/// second's go through centres of the range's primitives, which are dense where those are; later
+/// looks' lie around each axis' best plane so far, ever closer.
 Plane make_plane(Task task, uint look, uint id) {
     Plane plane;
-    plane.axis = id % 3;
+    plane.axis = (id + (look == 1 ? kPlanes : 0)) % 3;  // the second look deals on
     plane.left = plane.right = empty_keys();
     plane.left_count = 0;
-    if (look == 0 && id >= kEven) {
-        const uint turn = min(id, kPlanes - 1) - kEven;
-        const uint place = uint((uint64_t(turn) * 2 + 1) * task.count / (2 * (kPlanes - kEven)));
+    if (look == 1) {
+        const uint turn = min(id, kPlanes - 1);
+        const uint place = uint((uint64_t(turn) * 2 + 1) * task.count / (2 * kPlanes));
         const uint mine = order_of(task.side).at[task.first + place];
         const Primitive primitive = pool.client.primitives.at[mine];
         precise vec3 center = primitive.lower + primitive.upper;
@@ -42,14 +41,14 @@ Plane make_plane(Task task, uint look, uint id) {
         return plane;
     }
     precise float extent = component(task.center_upper - task.center_lower, plane.axis);
-    const uint even_on_axis = (kEven - plane.axis + 2) / 3, on_axis = (kPlanes - plane.axis + 2) / 3;
-    float origin = component(task.center_lower, plane.axis);
-    float offset = fraction(id / 3 + 1, even_on_axis + 1);
-    if (look > 0) {
+    const uint on_axis = (kPlanes - plane.axis + 2) / 3;
+    const float even = fraction(id / 3 + 1, on_axis + 1);
+    float origin = component(task.center_lower, plane.axis), offset = even;
+    if (look > 1) {
+        float spacing = fraction(1, on_axis + 1);
+        for (uint before = 2; before < look; ++before) spacing *= fraction(2, on_axis + 1);
         origin = component(task.axis_position, plane.axis);
-        float spacing = fraction(1, even_on_axis + 1);
-        for (uint before = 1; before < look; ++before) spacing *= fraction(2, on_axis + 1);
-        offset = spacing * (2.0 * fraction(id / 3 + 1, on_axis + 1) - 1.0);
+        offset = spacing * (2.0 * even - 1.0);
     }
     precise float position = origin + extent * offset;
     plane.position = position;
