@@ -70,11 +70,16 @@ void take_children(inout Task task, KeyBox boxes[4]) {
     task.right_centers = boxes[3];
 }
 
+/// Ranges of at most kFewPrimitives are looked at once: further looks hardly better their splits.
+uint small_looks(Task task) {
+    return !task.looks ? 0 : task.count > kFewPrimitives ? kSmallLooks : 1;
+}
+
 /// A chunk of a large task's looks or of its partition, or a whole small task's looks and partition:
 /// together, so that there is one copy of each in the kernel.
 void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
     const bool small = phase == kPhaseSmall;
-    const uint looks = phase == kPhasePlanes ? step + 1 : small && task.looks ? kSmallLooks : 0;
+    const uint looks = phase == kPhasePlanes ? step + 1 : small ? small_looks(task) : 0;
     for (uint look = phase == kPhasePlanes ? step : 0; look < looks; ++look) {
         Plane planes[kRows];
         make_planes(task, look, planes);
