@@ -18,17 +18,19 @@ using namespace taskpool;
 constexpr std::uint32_t kDeterministicLeafRange = 8;
 constexpr std::uint32_t kMaxLeafRange = 32;  // a set of lanes is one word there
 
-// The kernel's struct Task: 12 words of range and rule, 6 of bounds, and five boxes of keys.
+// The kernel's struct Task: 18 words of range and rule, 6 of bounds, and five boxes of keys.
 struct Task {
     uint first, count, node, depth, side;
     uint box[kKeys];
     float center_lower[3], center_upper[3];
     uint rule, axis;
-    float position, cost;
+    float position;
+    uint looks;
+    float axis_cost[3], axis_position[3];
     uint left_count;
     uint children[4 * kKeys];
 };
-static_assert(sizeof(Task) == 46 * 4);
+static_assert(sizeof(Task) == 52 * 4);
 
 struct Client {
     std::uint64_t primitives, order[2], nodes, scratch, input;
@@ -42,13 +44,20 @@ std::size_t scratch_words(std::size_t triangles, std::uint32_t planes) {
 
 std::size_t node_count(std::size_t triangles) { return std::max<std::size_t>(2 * triangles, 1); }
 
+std::uint32_t leaf_range_of(std::uint32_t lanes, const Config& config) {
+    return std::min(lanes, config.deterministic ? kDeterministicLeafRange : kMaxLeafRange);
+}
+
 pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
     const std::uint32_t lanes = device.subgroup_size();
     const std::uint32_t rows = (config.planes + lanes - 1) / lanes;
     pool::ClientSpec spec;
     spec.task_bytes = sizeof(Task);
-    spec.chunk_iterations =
-        2 * kChunkPrimitives + 4 * kChunkPrimitives / lanes + 8 * lanes + 4 * config.planes + 512;
+    // A small task's looks and its move, or a subgroup's leaves, and the transition.
+    const std::uint32_t groups = kChunkPrimitives / lanes,
+                        leaf_range = leaf_range_of(lanes, config);
+    spec.chunk_iterations = config.small_looks * (kChunkPrimitives / 4 + 2 * groups) + 2 * groups +
+                            2 * (leaf_range + 1) * (leaf_range + 1) + 16 * config.planes + 512;
     spec.constants = {
         {16, config.planes},
         {17, rows},
@@ -56,8 +65,7 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
         {19, config.leaf_by_cost},
         {20, float(config.costs.traversal)},
         {21, float(config.costs.intersection)},
-        {22, config.deterministic ? std::min(lanes, kDeterministicLeafRange)
-                              : std::min(lanes, kMaxLeafRange)},
+        {22, leaf_range_of(lanes, config)},
         {23, config.split == Split::spatial_median},
         {24, config.max_depth},
         {25, config.large_looks},
@@ -76,7 +84,8 @@ const Config& checked(const gpu::Device& device, const Config& config) {
             "max_leaf_size must be from 1 to 8, and at most the subgroup size");
     require(config.max_depth >= 33, "max_depth must be at least 33");
     require(config.costs.traversal >= 0 && config.costs.intersection > 0, "costs must be positive");
-    require(config.large_looks >= 1 && config.small_looks >= 1, "looks must be at least 1");
+    require(config.large_looks >= 1 && config.large_looks <= 8, "large_looks must be from 1 to 8");
+    require(config.small_looks >= 1 && config.small_looks <= 8, "small_looks must be from 1 to 8");
     return config;
 }
 

@@ -18,7 +18,7 @@ layout(constant_id = 23) const bool kSpatialMedian = false;
 layout(constant_id = 24) const uint kMaxDepth = 64;
 /// Looks at candidate planes: of ranges of more than kChunkPrimitives, and of smaller ones.
 layout(constant_id = 25) const uint kLargeLooks = 2;
-layout(constant_id = 26) const uint kSmallLooks = 1;
+layout(constant_id = 26) const uint kSmallLooks = 2;
 
 const uint kRuleHalve = 0;  // the first half goes left
 const uint kRulePlane = 1;  // centres up to `position` on `axis` go left
@@ -31,7 +31,8 @@ struct Task {
     vec3 center_lower, center_upper;  // bounds of lower + upper of the primitives' boxes
     uint rule, axis;
     float position;
-    float cost;  // of the best plane so far; 0 if none is to be looked for
+    bool looks;  // for the best plane; otherwise the rule is set
+    vec3 axis_cost, axis_position;  // of the best plane so far on each axis
     uint left_count;
     KeyBox left_box, left_centers, right_box, right_centers;
 };

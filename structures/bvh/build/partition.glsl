@@ -1,5 +1,5 @@
-// Choosing planes and partitioning ranges, in chunks of large tasks and whole for small ones. Which side a
-// primitive goes to depends on nothing but its box (or, to halve a range, on its place), and it
+// Choosing planes and partitioning ranges, in chunks of large tasks and whole for small ones. Which side
+// a primitive goes to depends on nothing but its box (or, to halve a range, on its place), and it
 // lands at a place that depends on nothing but the order before: builds are deterministic.
 
 /// Side test of a task's split, evaluated the same way wherever it is needed.
@@ -70,11 +70,16 @@ void take_children(inout Task task, KeyBox boxes[4]) {
     task.right_centers = boxes[3];
 }
 
+/// Ranges of at most kFewPrimitives are looked at once: further looks hardly better their splits.
+uint small_looks(Task task) {
+    return !task.looks ? 0 : task.count > kFewPrimitives ? kSmallLooks : 1;
+}
+
 /// A chunk of a large task's looks or of its partition, or a whole small task's looks and partition:
 /// together, so that there is one copy of each in the kernel.
 void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
     const bool small = phase == kPhaseSmall;
-    const uint looks = phase == kPhasePlanes ? step + 1 : small && task.cost != 0 ? kSmallLooks : 0;
+    const uint looks = phase == kPhasePlanes ? step + 1 : small ? small_looks(task) : 0;
     for (uint look = phase == kPhasePlanes ? step : 0; look < looks; ++look) {
         Plane planes[kRows];
         make_planes(task, look, planes);
@@ -91,7 +96,7 @@ void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
         right -= begin - task.first - left_before;
     }
     KeyBox boxes[4];
-    uint left_count = move_range(task, begin, end, left, right, boxes);
+    const uint left_count = move_range(task, begin, end, left, right, boxes);
     if (!small) {
         flush_boxes(task.first, boxes);
         return;

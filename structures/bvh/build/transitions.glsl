@@ -6,7 +6,7 @@ uint chunks_of(uint count) { return (count + kChunkPrimitives - 1) / kChunkPrimi
 Next first_step(Task task) {
     if (task.count <= kLeafRange) return next_step(kPhaseLeaves, 0, 1);
     if (task.count <= kChunkPrimitives) return next_step(kPhaseSmall, 0, 1);
-    return next_step(task.cost != 0 ? kPhasePlanes : kPhaseCount, 0, chunks_of(task.count));
+    return next_step(task.looks ? kPhasePlanes : kPhaseCount, 0, chunks_of(task.count));
 }
 
 /// Rule of a fresh task. Halving bounds the depth: once only halving can still finish above kMaxDepth.
@@ -15,7 +15,9 @@ void set_rule(inout Task task) {
     const uint halvings = uint(findMSB(max(task.count, 1u))) + 1;
     const bool halve = task.depth + halvings >= kMaxDepth || extent == vec3(0);
     task.rule = kSpatialMedian && !halve ? kRulePlane : kRuleHalve;
-    task.cost = kSpatialMedian || halve ? 0 : kInfinity;
+    task.looks = !kSpatialMedian && !halve;
+    task.axis_cost = vec3(kInfinity);
+    task.axis_position = vec3(0);
     task.axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
     precise float middle = 0.5 * task.center_lower[task.axis] + 0.5 * task.center_upper[task.axis];
     task.position = middle;
@@ -85,7 +87,7 @@ Next split_task(inout Task task) {
 Next after_small(inout Task task) {
     if (task.left_count != 0 && task.left_count != task.count) return split_task(task);
     task.rule = kRuleHalve;
-    task.cost = 0;
+    task.looks = false;
     return next_step(kPhaseSmall, 0, 1);
 }
 
