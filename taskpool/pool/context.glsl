@@ -7,7 +7,7 @@ uint pool_iterations = 0;     // of the budget
 uint pool_hint = 0;           // where this subgroup looks first for work
 uint pool_free_hint = 0;      // and for a free slot
 int pool_live_delta = 0;      // private tasks spawned less tasks ended, not yet told to the others
-uint64_t pool_began;
+uint pool_began;
 
 /// True in run_chunk while this subgroup runs all chunks of the step: results may stay in `task`.
 bool pool_alone() { return pool_is_alone; }
@@ -135,14 +135,15 @@ void flush_counters() {
     atomicMax(pool.state.state.high_water, pool_counters.high_water);
 }
 
-/// Device clock in nanoseconds where the driver counts in them (all that we know do).
-uint64_t pool_clock() { return clockRealtimeEXT(); }
+/// Device clock in nanoseconds (what all drivers that we know count in). Its upper half is left out:
+/// lavapipe's clock has none. Differences are right across a wrap, up to four seconds.
+uint pool_clock() { return clockRealtime2x32EXT().x; }
 
-uint microseconds_since(uint64_t begin) { return uint((pool_clock() - begin) / 1000ul); }
+uint microseconds_since(uint begin) { return (pool_clock() - begin) / 1000; }
 
-void trace_chunk(uint slot, uint phase, uint step, uint64_t begin) {
+void trace_chunk(uint slot, uint phase, uint step, uint begin) {
     if (!subgroupElect()) return;
-    const uint64_t end = pool_clock();
+    const uint end = pool_clock();
     const uint i = atomicAdd(pool.state.state.trace_count, 1u);
     if (i < pool.trace_capacity)
         pool.trace.at[i] =

@@ -10,6 +10,7 @@ namespace taskpool::pool {
 namespace {
 
 constexpr std::uint32_t kStackDepth = 64;
+constexpr std::uint32_t kMaxTimeBudget = 4000;  // ms: the kernel's clock wraps after 4.29 s
 constexpr std::uint32_t kIdlePolls = 20000;
 /// Loops in the engine once its functions are inlined: see ClientSpec::loops.
 constexpr std::uint32_t kEngineLoops = 16;
@@ -155,7 +156,7 @@ PoolPush Pool::next_push() const {
             trace_.address(),
             status_.capacity,
             iteration_budget(*device_, config_),
-            config_.time_budget_ms * 1000,
+            std::min(config_.time_budget_ms, kMaxTimeBudget) * 1000,
             config_.trace_capacity};
 }
 

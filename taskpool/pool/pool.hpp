@@ -34,7 +34,7 @@ struct PoolConfig {
     /// Loop iterations and time after which a subgroup leaves a launch. A driver that cuts loops
     /// (DeviceInfo::loop_limit) bounds the former further.
     std::uint32_t iteration_budget = 1u << 30;
-    std::uint32_t time_budget_ms = 500;
+    std::uint32_t time_budget_ms = 500;  ///< at most 4000
     std::uint32_t trace_capacity = 0;  ///< records kept of single chunks; 0: no tracing
 };
 

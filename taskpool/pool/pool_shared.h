@@ -62,13 +62,13 @@ struct PoolState {
 
 struct TraceRecord {
     uint subgroup, slot, phase, step;
-    uint64_t begin, end;  // device clock
+    uint begin, end;  // device clock in nanoseconds, modulo 2^32
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(TaskInfo) == 40);
 static_assert(sizeof(PoolState) == 14 * 4 + kPhaseCounters * 4);
-static_assert(sizeof(TraceRecord) == 32);
+static_assert(sizeof(TraceRecord) == 24);
 
 // Push constants of every pool kernel; the client's own struct Client follows.
 struct PoolPush {

@@ -204,7 +204,7 @@ void main() {
         const uint end = owned ? info.chunk_count : pool_chunk_end;
         if (chunk < end) {
             pool_is_alone = owned;
-            uint64_t begin;
+            uint begin;
             if (kTrace) begin = pool_clock();
             run_chunk(task, info.phase, info.step, chunk);
             pool_order_lanes();
