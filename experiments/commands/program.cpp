@@ -22,6 +22,16 @@ std::string joined(int argc, const char* const* argv) {
     return fmt::format("grove {}", fmt::join(argv + std::min(argc, 1), argv + argc, " "));
 }
 
+/// CLI11's own check names the bounds of double in its message.
+const CLI::Validator kNotNegative(
+    [](const std::string& text) {
+        double value = -1;
+        return CLI::detail::lexical_cast(text, value) && value >= 0
+                   ? std::string()
+                   : fmt::format("'{}' is no number from 0 on", text);
+    },
+    "");
+
 /// What is wrong with a command line whose first word is `command`.
 std::string usage_error(const CLI::ParseError& error, const std::string& command) {
     const std::vector<std::string> known = {"run", "test", "list", "doctor", "compare", "report"};
@@ -34,6 +44,7 @@ std::string usage_error(const CLI::ParseError& error, const std::string& command
 int parse_and_run(int argc, const char* const* argv, const measure::Registries& registries) {
     CLI::App app("Hierarchies built by a GPU task pool, and what they are worth.", "grove");
     app.require_subcommand(1);
+    app.footer("`./grove test` builds and runs the tests.");
 
     RunRequest request;
     request.command_line = joined(argc, argv);
@@ -44,7 +55,7 @@ int parse_and_run(int argc, const char* const* argv, const measure::Registries& 
         ->add_option("--set", request.assignments, "KEY=VALUE: override, e.g. method.0.stack=16")
         ->allow_extra_args(false);
     run_command->add_option("--device", request.device, "index from `grove list devices`")
-        ->check(CLI::NonNegativeNumber);
+        ->check(kNotNegative);
     run_command->add_option("--shaders", request.shaders,
                             "folder of SPIR-V files to use instead of the built-in ones");
     run_command->add_flag("--resume", request.resume, "continue the run in --out");
@@ -66,7 +77,7 @@ int parse_and_run(int argc, const char* const* argv, const measure::Registries& 
     compare_command->add_option("RUN_A", run_a, "folder of the run to compare with")->required();
     compare_command->add_option("RUN_B", run_b, "folder of the run to judge")->required();
     compare_command->add_option("--fail-over", limit, "PERCENT: exit 1 if B is worse by more")
-        ->check(CLI::NonNegativeNumber);
+        ->check(kNotNegative);
 
     std::string run_folder;
     CLI::App* report_command = app.add_subcommand("report", "(re)make report.html of a run");

@@ -41,7 +41,7 @@ void check_device_index(int index) {
     const int count = int(taskpool::gpu::list_devices().size());
     if (count > 0 && index >= count)
         throw config::ConfigError(
-            fmt::format("--device {}: there are {} devices; see grove list devices", index, count));
+            fmt::format("--device {}: expected 0 to {}; see grove list devices", index, count - 1));
 }
 
 std::string results_table(const std::vector<measure::ResultSummary>& results) {
