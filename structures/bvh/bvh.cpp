@@ -57,7 +57,7 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
     const std::uint32_t groups = kChunkPrimitives / lanes,
                         leaf_range = leaf_range_of(lanes, config);
     spec.chunk_iterations = config.small_looks * (kChunkPrimitives / 4 + 3 * groups) + 2 * groups +
-                            2 * (leaf_range + 2) * (leaf_range + 2) + 16 * config.planes + 512;
+                            2 * (leaf_range + 2) * (leaf_range + 2) + 16 * config.planes + 1024;
     spec.constants = {
         {16, config.planes},
         {17, rows},
