@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::uint32_t kStackDepth = 64;
 constexpr std::uint32_t kIdlePolls = 20000;
+/// Loops in the engine once its functions are inlined: see ClientSpec::loops.
+constexpr std::uint32_t kEngineLoops = 16;
 /// Launches in a row that may do nothing before the pool gives up: several are normal when the
 /// budget is tiny.
 constexpr std::uint32_t kMaxIdleLaunches = 1000;
@@ -59,6 +61,7 @@ gpu::Kernel make_kernel(gpu::Device& device, const gpu::Shader& shader, const Cl
         {6, client.chunk_iterations},
         {7, std::min(kIdlePolls, iteration_budget(device, config) / 2)},
         {8, config.trace_capacity > 0},
+        {9, device.info().loop_limit ? kEngineLoops + client.loops : 1u},
     };
     constants.insert(constants.end(), client.constants.begin(), client.constants.end());
     return gpu::Kernel(device, shader, constants);

@@ -44,6 +44,9 @@ struct ClientSpec {
     /// Loop iterations that one chunk and its transition may take.
     std::uint32_t chunk_iterations = 1;
     std::vector<gpu::Constant> constants{};  ///< ids from 16 on
+    /// Loops in the text of the hooks, at most. Mesa before version 23 runs a branch that no lane takes
+    /// with all lanes off: each of its loops still counts one iteration.
+    std::uint32_t loops = 16;
 };
 
 /// First step of the root task.

@@ -27,4 +27,6 @@ layout(constant_id = 6) const uint kChunkIterations = 1;
 /// Polls in vain after which a subgroup leaves the launch.
 layout(constant_id = 7) const uint kIdlePolls = 1000000;
 layout(constant_id = 8) const bool kTrace = false;
+/// Loop iterations that a turn of the engine's loop counts for, beyond its chunk.
+layout(constant_id = 9) const uint kTurnIterations = 1;
 // Constants from 16 on are the client's.

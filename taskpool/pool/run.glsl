@@ -111,7 +111,7 @@ bool spawn_next_child(inout TaskInfo info, inout Task task) {
     if (info.spawn_next == 0) {
         info.state = kStateRun;
         if (info.join == 0) {
-            finish_task(info, task);  // only a spawn of no child comes here: see below
+            finish_task(info, task);  // its slot was no child's: there was none, or child 0 waits
             return true;
         }
         if (subgroupElect()) {
@@ -176,8 +176,8 @@ void main() {
     uint idle = 0;
     uint since_clock = 0;
 
-    while (pool_iterations + kChunkIterations < pool.iteration_budget) {
-        ++pool_iterations;
+    while (pool_iterations + kChunkIterations + kTurnIterations < pool.iteration_budget) {
+        pool_iterations += kTurnIterations;
         if (++since_clock >= 64) {
             since_clock = 0;
             if (microseconds_since(pool_began) > pool.time_budget_us) break;

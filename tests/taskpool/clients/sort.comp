@@ -60,29 +60,38 @@ void partition_chunk(Task task, uint chunk) {
     pool_spend(2 * kChunk / gl_SubgroupSize);
 }
 
-/// Insertion sort by one lane, into buffer 0.
-void sort_leaf(Task task) {
-    if (!subgroupElect()) return;
+/// Brings a leaf to buffer 0: equal keys as they are, a chunk at a time; others by one lane's
+/// insertion sort.
+void sort_leaf(Task task, uint chunk) {
     PoolUints source = pool.client.keys[task.side], target = pool.client.keys[0];
+    if (task.low == task.high) {
+        const uint begin = task.first + chunk * kChunk;
+        const uint end = min(begin + kChunk, task.first + task.count);
+        for (uint i = begin + gl_SubgroupInvocationID; i < end; i += gl_SubgroupSize)
+            target.at[i] = source.at[i];
+        pool_spend(kChunk / gl_SubgroupSize);
+        return;
+    }
+    pool_spend(task.count * task.count);
+    if (!subgroupElect()) return;
     for (uint i = 0; i < task.count; ++i) {
         const uint key = source.at[task.first + i];
         uint j = i;
-        if (task.low != task.high)
-            for (; j > 0 && target.at[task.first + j - 1] > key; --j)
-                target.at[task.first + j] = target.at[task.first + j - 1];
+        for (; j > 0 && target.at[task.first + j - 1] > key; --j)
+            target.at[task.first + j] = target.at[task.first + j - 1];
         target.at[task.first + j] = key;
     }
 }
 
 void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
     if (phase == kPhasePartition) partition_chunk(task, chunk);
-    else sort_leaf(task);
-    if (phase == kPhaseLeaf) pool_spend(min(task.count, 1000u));
+    else sort_leaf(task, chunk);
 }
 
 Next finish_step(inout Task task, uint phase, uint step) {
     if (phase == kPhasePartition) {
-        if (is_leaf(task)) return next_step(kPhaseLeaf, 0, 1);
+        if (is_leaf(task))
+            return next_step(kPhaseLeaf, 0, task.low == task.high ? chunk_count(task.count) : 1);
         task.below = pool.client.cursors.at[task.first];
         return next_spawn(2);
     }
