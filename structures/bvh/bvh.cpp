@@ -52,6 +52,7 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
     const std::uint32_t lanes = device.subgroup_size();
     const std::uint32_t rows = (config.planes + lanes - 1) / lanes;
     pool::ClientSpec spec;
+    spec.loops = 64;
     spec.task_bytes = sizeof(Task);
     // A small task's looks and its move, or a subgroup's leaves, and the transition.
     const std::uint32_t groups = kChunkPrimitives / lanes,

@@ -65,14 +65,9 @@ PoolUints order_of(uint side) {
 #include "structures/bvh/build/partition.glsl"
 #include "structures/bvh/build/transitions.glsl"
 
-/// Loops of this kernel that a hook may pass without a lane in them: a driver that cuts loops may count
-/// one iteration of each.
-const uint kPassedLoops = 64;
-
 void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
     const uint begin = task.first + chunk * kChunkPrimitives;
     const uint end = min(begin + kChunkPrimitives, task.first + task.count);
-    pool_spend(kPassedLoops);
     switch (phase) {
         case kPhaseSetup: setup_chunk(begin, end); break;
         case kPhaseCompact: compact_chunk(begin, end); break;
@@ -83,7 +78,6 @@ void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
 }
 
 Next finish_step(inout Task task, uint phase, uint step) {
-    pool_spend(kPassedLoops);
     switch (phase) {
         case kPhaseSetup: return after_setup(task);
         case kPhaseCompact: return after_compact(task);
@@ -97,7 +91,6 @@ Next finish_step(inout Task task, uint phase, uint step) {
 }
 
 Task spawn_child(Task parent, uint child, out Start start) {
-    pool_spend(kPassedLoops);
     const Task task = child_of(parent, child);
     const Next first = first_step(task);
     start = Start(first.phase, first.step, first.chunks, 0);
