@@ -52,12 +52,13 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
     const std::uint32_t lanes = device.subgroup_size();
     const std::uint32_t rows = (config.planes + lanes - 1) / lanes;
     pool::ClientSpec spec;
+    spec.loops = 64;
     spec.task_bytes = sizeof(Task);
     // A small task's looks and its move, or a subgroup's leaves, and the transition.
     const std::uint32_t groups = kChunkPrimitives / lanes,
                         leaf_range = leaf_range_of(lanes, config);
-    spec.chunk_iterations = config.small_looks * (kChunkPrimitives / 4 + 2 * groups) + 2 * groups +
-                            2 * (leaf_range + 1) * (leaf_range + 1) + 16 * config.planes + 512;
+    spec.chunk_iterations = config.small_looks * (kChunkPrimitives / 4 + 3 * groups) + 2 * groups +
+                            2 * (leaf_range + 2) * (leaf_range + 2) + 16 * config.planes + 1024;
     spec.constants = {
         {16, config.planes},
         {17, rows},

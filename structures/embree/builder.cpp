@@ -1,4 +1,5 @@
-// Embree's own builder as a structure: the rival of every build time. Its tree cannot be looked into.
+// Embree's own builder as a structure: the rival of every build time. Its tree cannot be looked
+// into.
 #include "structures/embree/scene.hpp"
 #include "structures/structure.hpp"
 
@@ -60,8 +61,9 @@ std::unique_ptr<Builder> create(taskpool::gpu::Device&, const Settings& settings
 }  // namespace
 
 std::span<const StructureRow> rows() {
-    static const StructureRow all[] = {
-        {"embree", "Embree's BVH, built on the CPU: a rival for build times", &parameters, &create}};
+    static const StructureRow all[] = {{"embree",
+                                        "Embree's BVH, built on the CPU: a rival for build times",
+                                        &parameters, &create}};
     return all;
 }
 

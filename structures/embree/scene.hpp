@@ -31,8 +31,8 @@ class Scene {
 
     /// Copies the non-degenerate triangles. Throws std::runtime_error when memory does not suffice.
     void load(const structures::geometry::TriangleMesh& mesh);
-    /// Builds the loaded mesh from scratch, `robust`: with RTC_SCENE_FLAG_ROBUST, and returns the wall time
-    /// of committing geometry and scene, in milliseconds.
+    /// Builds the loaded mesh from scratch, `robust`: with RTC_SCENE_FLAG_ROBUST, and returns the
+    /// wall time of committing geometry and scene, in milliseconds.
     double build(Quality quality, bool robust = true);
     /// The built scene; null before build().
     RTCScene handle() const { return scene_.get(); }

@@ -35,7 +35,7 @@ struct PoolConfig {
     /// (DeviceInfo::loop_limit) bounds the former further.
     std::uint32_t iteration_budget = 1u << 30;
     std::uint32_t time_budget_ms = 500;  ///< at most 4000
-    std::uint32_t trace_capacity = 0;  ///< records kept of single chunks; 0: no tracing
+    std::uint32_t trace_capacity = 0;    ///< records kept of single chunks; 0: no tracing
 };
 
 /// What the pool must know about a client kernel.
@@ -44,8 +44,8 @@ struct ClientSpec {
     /// Loop iterations that one chunk and its transition may take.
     std::uint32_t chunk_iterations = 1;
     std::vector<gpu::Constant> constants{};  ///< ids from 16 on
-    /// Loops in the text of the hooks, at most. Mesa before version 23 runs a branch that no lane takes
-    /// with all lanes off: each of its loops still counts one iteration.
+    /// Loops in the text of the hooks, at most. Mesa before version 23 runs a branch that no lane
+    /// takes with all lanes off: each of its loops still counts one iteration.
     std::uint32_t loops = 16;
 };
 

@@ -167,7 +167,10 @@ void main() {
     pool_began = pool_clock();
     pool_counters = PoolState(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, uint[kPhaseCounters](
         0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0));
-    pool_hint = gl_WorkGroupID.x * gl_SubgroupSize;
+    // Subgroups begin their search apart, and each launch where the last one came to: a budget may be
+    // too small for a look at all slots.
+    pool_hint = (subgroupBroadcastFirst(pool.state.state.polls) * gl_SubgroupSize +
+                 gl_WorkGroupID.x * (slots_in_use() / gl_NumWorkGroups.x)) % slots_in_use();
     // Beyond the slots in use there are sure to be free ones.
     if (kPolicy == kPolicyScan) pool_free_hint = slots_in_use();
     pool_held = PoolUints(pool.stacks).at[gl_WorkGroupID.x];

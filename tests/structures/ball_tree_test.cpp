@@ -31,6 +31,21 @@ TriangleMesh scales(std::size_t count, std::uint32_t seed) {
     return mesh;
 }
 
+/// One triangle per power of two: splitting in the middle would cut off one at a time.
+TriangleMesh powers_of_two(int count) {
+    TriangleMesh mesh;
+    for (int i = 0; i < count; ++i) {
+        const float s = std::ldexp(1.0f, i - count / 2);
+        tests::add_triangle(mesh, {s, 0, 0}, {0, s, 0}, {0, 0, s});
+    }
+    return mesh;
+}
+
+TriangleMesh scaled(TriangleMesh mesh, float factor) {
+    for (glm::vec3& position : mesh.positions) position *= factor;
+    return mesh;
+}
+
 /// Every third triangle degenerate, and runs of copies.
 TriangleMesh mixed(std::size_t count, std::uint32_t seed) {
     TriangleMesh mesh = tests::random_triangles(count, seed);
@@ -49,6 +64,10 @@ std::vector<TriangleMesh> meshes(std::uint32_t seed) {
     all.push_back(tests::identical_triangles(10'000));
     all.push_back(mixed(5'000, seed));
     all.push_back(scales(20'000, seed));
+    all.push_back(powers_of_two(110));
+    // Squared distances overflow, or are all 0.
+    for (const float factor : {1e30f, 1e-30f})
+        all.push_back(scaled(tests::random_triangles(500, seed), factor));
     all.push_back(tests::sphere(100, 200, {1, 2, 3}, 4));
     return all;
 }

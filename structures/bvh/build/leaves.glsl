@@ -97,7 +97,7 @@ void build_leaves(Task task) {
             node = goes_left ? pair : pair + 1;
             begin += goes_left ? 0 : uint(bitCount(lefts));
         }
-        pool_spend(2 * task.count + 2);
+        pool_spend(2 * task.count + 4);
     }
     if (used) pool.client.order[0].at[begin + uint(bitCount(members & lanes_before))] = id;
 }

@@ -38,7 +38,7 @@ uint move_range(Task task, uint begin, uint end, uint left, uint right, out KeyB
         boxes[3] = join(boxes[3], masked(right_mask, key));
     }
     join_lanes(boxes);
-    pool_spend((end - begin) / gl_SubgroupSize + kReduceIterations);
+    pool_spend((end - begin) / gl_SubgroupSize + 2 + kReduceIterations);
     return left - left_begin;
 }
 

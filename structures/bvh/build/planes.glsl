@@ -93,7 +93,7 @@ void pass_primitives(Task task, uint begin, uint end, inout Plane planes[kRows])
                 planes[row] = plane;
             }
         }
-        pool_spend(present / kUnroll + 2);
+        pool_spend(present / kUnroll + 3);
     }
 }
 
@@ -124,6 +124,7 @@ void choose_plane(inout Task task, Plane planes[kRows]) {
         cost = mix(cost, other, take);
         position = mix(position, place, take);
     }
+    pool_spend(kReduceIterations);
     task.axis_cost = cost;
     task.axis_position = position;
     const uint axis = cost.x <= cost.y && cost.x <= cost.z ? 0 : cost.y <= cost.z ? 1 : 2;
@@ -137,4 +138,5 @@ void choose_plane(inout Task task, Plane planes[kRows]) {
 void make_planes(Task task, uint look, out Plane planes[kRows]) {
     [[unroll]] for (uint row = 0; row < kRows; ++row)
         planes[row] = make_plane(task, look, row * gl_SubgroupSize + gl_SubgroupInvocationID);
+    pool_spend(kRows * (look + 2));
 }

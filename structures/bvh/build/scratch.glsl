@@ -17,6 +17,7 @@ void clear_scratch(uint first) {
     for (uint i = gl_SubgroupInvocationID; i < kScratchWords; i += gl_SubgroupSize)
         pool.client.scratch.words[scratch_word(first) + i] = 0;
     pool_spend(kScratchWords / gl_SubgroupSize);
+    pool_order_lanes();
 }
 
 /// Joins the boxes, which all lanes know, into the task's words from kChildWord on.
@@ -56,6 +57,7 @@ uint scan_chunks(uint first, uint count) {
         sum += subgroupAdd(mine);
         pool_spend(1);
     }
+    pool_order_lanes();
     return sum;
 }
 
