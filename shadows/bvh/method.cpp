@@ -82,6 +82,10 @@ Samples BvhMethod::build(const Light& light) {
     Samples samples = source_.counters();
     samples.push_back({"build_ms", milliseconds, "ms"});
     samples.push_back({"nodes", double(wide_.header().node_count)});
+    using structures::bvh::wide::WideBuilder;
+    const std::size_t wide_bytes = WideBuilder::tree_bytes(source_.capacity()) +
+                                   WideBuilder::scratch_bytes(source_.capacity());
+    samples.push_back({"memory_bytes", double(source_.memory_bytes() + wide_bytes), "bytes"});
     return samples;
 }
 

@@ -14,7 +14,7 @@ class BvhMethod final : public Method {
     BvhMethod(taskpool::gpu::Device& device, const structures::Settings& settings);
 
     void prepare(const structures::geometry::TriangleMesh& mesh) override;
-    /// build_ms (binary tree and collapse), nodes, counters of the pool.
+    /// build_ms (binary tree and collapse), memory_bytes, nodes, counters of the pool.
     structures::Samples build(const structures::geometry::Light& light) override;
     /// query_ms, incomplete, deferred and, with statistics, visited nodes and tested triangles.
     structures::Samples query(const Points& points, Visibility& visible) override;

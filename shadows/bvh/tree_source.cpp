@@ -66,6 +66,10 @@ double TreeSource::build() {
     return time.count();
 }
 
+std::size_t TreeSource::memory_bytes() const {
+    return gpu_ ? gpu_->required_bytes(mesh_->triangle_count()) : nodes_.size() + order_.size();
+}
+
 structures::Samples TreeSource::counters() const {
     if (!gpu_) return {};
     const taskpool::pool::PoolStatus& status = gpu_->status();

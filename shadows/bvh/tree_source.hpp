@@ -25,6 +25,8 @@ class TreeSource {
     void prepare(const structures::geometry::TriangleMesh& mesh);
     /// Builds the tree; returns the milliseconds: device time on the GPU, wall time on the CPU.
     double build();
+    /// Device memory of a build: the tree and what building it takes; for a CPU build the tree.
+    std::size_t memory_bytes() const;
     /// Counters of the last build on the pool; nothing for a CPU build.
     structures::Samples counters() const;
 
