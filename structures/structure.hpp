@@ -27,7 +27,8 @@ class Builder {
   public:
     virtual ~Builder() = default;
 
-    /// Bytes of device memory that building `triangle_count` triangles takes, output included.
+    /// Bytes of device memory that building `triangle_count` triangles takes, output included, the
+    /// uploaded mesh not; 0 for a builder that works in host memory.
     virtual std::size_t required_bytes(std::size_t triangle_count) const = 0;
     /// Allocates for `mesh` and uploads it; not part of a build's time. The mesh must outlive the
     /// builder's use. An empty mesh is fine.
@@ -38,7 +39,8 @@ class Builder {
     virtual Samples metrics() = 0;
     /// Reads the built structure back and checks every invariant; one line per violation.
     virtual std::vector<std::string> validate() = 0;
-    /// A hash of the finished structure's bytes: equal builds have equal fingerprints.
+    /// A hash of the finished structure's bytes: equal builds have equal fingerprints. 0: it cannot be
+    /// read.
     virtual std::uint64_t fingerprint() = 0;
     /// The last build chunk by chunk as Chrome trace-event JSON; empty unless the settings ask for it.
     virtual std::string trace() { return {}; }
