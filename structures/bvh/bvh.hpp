@@ -32,7 +32,7 @@ struct Config {
     /// look, through primitives' centres in the second, around each axis' best plane in further
     /// ones.
     std::uint32_t planes = 32;
-    /// Looks, 1 to 8, at ranges of more than 1024 primitives and at smaller ones down to 65; one
+    /// Looks, 1 to 8, at ranges of more than 1024 primitives and at smaller ones down to 33; one
     /// look at what is smaller still.
     std::uint32_t large_looks = 2, small_looks = 2;
     std::uint32_t max_leaf_size = 4;  ///< 1 to 8
