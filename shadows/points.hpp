@@ -20,6 +20,8 @@ inline constexpr std::uint32_t kTileSide = 16;
 inline constexpr std::uint32_t kTilePoints = kTileSide * kTileSide;
 /// Primitive id of a point without geometry (background, padding).
 inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
+/// Primitive id of a point in free space: it is asked about, and no triangle is its own.
+inline constexpr std::uint32_t kNoReceiver = 0xfffffffeu;
 
 /// Place of pixel (x, y) in the point order of an image `width` pixels wide.
 constexpr std::uint32_t point_index(std::uint32_t x, std::uint32_t y, std::uint32_t width) {
