@@ -37,7 +37,7 @@ Scenes repeated_triangle(Light::Type type) {
     for (int i = 0; i < 256; ++i) {
         const glm::dvec3 q((i % 16 - 7.5) * 0.2, -3, (i / 16 - 7.5) * 0.2);
         ask(scene, behind(scene.light, q, 2),
-            glm::length(q - glm::dvec3(0, -3, 0)) < 0.35 ? shadowed
+            glm::length(q - glm::dvec3(0, -3, 0)) < 0.35  ? shadowed
             : glm::length(q - glm::dvec3(0, -3, 0)) > 1.9 ? lit
                                                           : unsaid);
     }
@@ -142,7 +142,7 @@ Scenes broken_triangles(Light::Type type) {
             const double x = (i % 16 - 7.6) * 0.25, z = (i / 16 - 7.5) * 0.25;
             const double reach = std::max(std::abs(x), std::abs(z));
             ask(scene, {x, -3, z},
-                reach < (point ? 0.6 : 0.45) ? shadowed
+                reach < (point ? 0.6 : 0.45)   ? shadowed
                 : reach > (point ? 0.9 : 0.55) ? lit
                                                : unsaid,
                 floor_at(floor, x, z));

@@ -53,9 +53,7 @@ Scenes quad_diagonal(Light::Type type) {
     add_floor(scene.mesh, {0, -3, 0}, 1);
     for (int i = 0; i < 256; ++i) {
         const double t = -1.2 + 2.4 * i / 255;
-        const Expected expected = std::abs(t) < 0.98  ? shadowed
-                                  : std::abs(t) > 1.02 ? lit
-                                                       : unsaid;
+        const Expected expected = std::abs(t) < 0.98 ? shadowed : std::abs(t) > 1.02 ? lit : unsaid;
         ask(scene, behind(scene.light, {t, -3, t}, 2), expected);
     }
     return {scene};
@@ -65,7 +63,8 @@ Scenes fan_vertex(Light::Type type) {
     Scene scene = make_scene("", either_light(type, kOrigin, kDown));
     const glm::dvec3 hub = glm::vec3(0.1f, -3, 0.2f);
     const auto rim = [&](int i) {
-        const glm::dvec2 c = scenes::unit_circle(i / 64.0), wave = scenes::unit_circle(3 * i / 64.0);
+        const glm::dvec2 c = scenes::unit_circle(i / 64.0),
+                         wave = scenes::unit_circle(3 * i / 64.0);
         return hub + glm::dvec3(c.x, 0.25 * wave.y, c.y);
     };
     for (int i = 0; i < 64; ++i) add_triangle(scene.mesh, hub, rim(i), rim(i + 1));
@@ -130,13 +129,15 @@ Scenes wedge_mid_edge(Light::Type type) {
 Scenes single_sheet(Light::Type type) {
     Scenes scenes;
     for (const char* winding : {"clockwise", "counter-clockwise", "mixed"}) {
-        Scene scene = make_scene(winding, either_light(type, {0.5f, 0, 0.25f}, {0.25f, -1, 0.125f}));
+        Scene scene =
+            make_scene(winding, either_light(type, {0.5f, 0, 0.25f}, {0.25f, -1, 0.125f}));
         for (int i = 0; i < 25; ++i)
             scene.mesh.positions.emplace_back(i % 5 - 2, -3 + 0.125 * (i % 3), i / 5 - 2);
         for (int cell = 0; cell < 16; ++cell) {
             const std::uint32_t at = cell / 4 * 5 + cell % 4;
             glm::uvec3 one(at, at + 1, at + 6), other(at, at + 6, at + 5);
-            if (winding[0] == 'c' && winding[1] == 'o') std::swap(one.y, one.z), std::swap(other.y, other.z);
+            if (winding[0] == 'c' && winding[1] == 'o')
+                std::swap(one.y, one.z), std::swap(other.y, other.z);
             if (winding[0] == 'm') cell % 2 ? std::swap(one.y, one.z) : std::swap(other.y, other.z);
             scene.mesh.triangles.push_back(one);
             scene.mesh.triangles.push_back(other);

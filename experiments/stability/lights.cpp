@@ -62,8 +62,7 @@ Scenes caster_beyond(Light::Type type) {
     const double height = type == Light::Type::point ? 5 : -8;
     add_floor(scene.mesh, {0, height, 0}, 1);
     add_floor(scene.mesh, {0, height * 1.25, 0}, 3);
-    for (int i = 0; i < 256; ++i)
-        ask(scene, {i % 16 * 0.2 - 1.5, -5, i / 16 * 0.2 - 1.5}, lit);
+    for (int i = 0; i < 256; ++i) ask(scene, {i % 16 * 0.2 - 1.5, -5, i / 16 * 0.2 - 1.5}, lit);
     return {scene};
 }
 
@@ -73,8 +72,7 @@ Scenes caster_behind_camera(Light::Type type) {
     Scene scene = make_scene("", either_light(type, {0, 0.5f, 10}, {0, 0, -1}));
     scenes::add_quad(scene.mesh,
                      {glm::dvec3(-10, -10, -5), {10, -10, -5}, {10, 10, -5}, {-10, 10, -5}});
-    scenes::add_quad(scene.mesh,
-                     {glm::dvec3(-0.5, 0, 5), {0.5, 0, 5}, {0.5, 1, 5}, {-0.5, 1, 5}});
+    scenes::add_quad(scene.mesh, {glm::dvec3(-0.5, 0, 5), {0.5, 0, 5}, {0.5, 1, 5}, {-0.5, 1, 5}});
     const double size = type == Light::Type::point ? 1.5 : 0.5;
     for (int i = 0; i < 256; ++i) {
         const double x = (i % 16 - 7.5) / 7.5 * 2 * size, y = (i / 16 - 7.5) / 7.5 * 2 * size;

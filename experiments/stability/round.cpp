@@ -17,9 +17,8 @@ void ask_around(Scene& scene, glm::dvec3 a, glm::dvec3 b, double radius) {
         const glm::dvec3 core = a + random.uniform() * (b - a);
         const double reach = i % 2 ? random.uniform(0, 0.8) : random.uniform(1.05, 4);
         const glm::dvec3 p = core + reach * radius * random.direction();
-        const double t = a == b ? 0
-                                : glm::clamp(glm::dot(p - a, b - a) / glm::dot(b - a, b - a), 0.0,
-                                             1.0);
+        const double t =
+            a == b ? 0 : glm::clamp(glm::dot(p - a, b - a) / glm::dot(b - a, b - a), 0.0, 1.0);
         const double distance = glm::distance(p, a + t * (b - a)) / radius;
         ask(scene, p, distance < 0.85 ? lit : distance > 1.02 ? shadowed : unsaid);
     }
@@ -64,8 +63,8 @@ Scenes balls_at_threshold(Light::Type type) {
     const double radius = 0.4, distance = 4, spans = std::asin(radius / distance), threshold = 0.5;
     const auto add_ball = [&](double angle, double turns) {
         const glm::dvec2 c = scenes::unit_circle(turns);
-        const glm::dvec3 center = distance * glm::dvec3(std::sin(angle) * c.x, -std::cos(angle),
-                                                        std::sin(angle) * c.y);
+        const glm::dvec3 center =
+            distance * glm::dvec3(std::sin(angle) * c.x, -std::cos(angle), std::sin(angle) * c.y);
         scenes::add_sphere(scene.mesh, center, radius, 8);
         for (int i = 0; i < 16; ++i) {
             const glm::dvec2 d = scenes::unit_circle(i / 16.0);
@@ -96,7 +95,9 @@ Scenes capsule_end_on(Light::Type) {
         const double y = i / 128 ? -6 : -2;  // below, and beside where it is outside
         if (y == -2 && reach < 1.02) continue;
         ask(scene, {reach * radius * c.x, y, reach * radius * c.y},
-            reach < 0.97 ? shadowed : reach > 1.02 ? lit : unsaid);
+            reach < 0.97   ? shadowed
+            : reach > 1.02 ? lit
+                           : unsaid);
     }
     return {scene};
 }
@@ -109,10 +110,13 @@ Scenes crossing_capsules(Light::Type type) {
     for (int i = 0; i < 256; ++i) {
         const double along = 9.95 * (i / 8 - 15.5) / 15.5;
         const double across = (i / 2 % 4 - 1) * 0.6 * radius;  // -0.6, 0, 0.6 and 1.2 radii
-        const glm::dvec3 q = i % 2 ? glm::dvec3(along, -1, across) : glm::dvec3(across, -1.05, along);
+        const glm::dvec3 q =
+            i % 2 ? glm::dvec3(along, -1, across) : glm::dvec3(across, -1.05, along);
         ask(scene, behind(scene.light, q, 2), std::abs(across) < 0.9 * radius ? shadowed : unsaid);
         if (i % 4 == 0 && std::abs(along) > 1)
-            ask(scene, behind(scene.light, q + (i % 2 ? glm::dvec3(0, 0, 0.2) : glm::dvec3(0.2, 0, 0)), 2), lit);
+            ask(scene,
+                behind(scene.light, q + (i % 2 ? glm::dvec3(0, 0, 0.2) : glm::dvec3(0.2, 0, 0)), 2),
+                lit);
     }
     return {scene};
 }

@@ -30,8 +30,8 @@ Scenes far_light(Light::Type type) {
 
 Scenes far_from_origin(Light::Type type) {
     const glm::dvec3 offset(0x1p20);
-    Scene scene = make_scene("", either_light(type, glm::vec3(offset + glm::dvec3(0, 4000, 0)),
-                                              kDown));
+    Scene scene =
+        make_scene("", either_light(type, glm::vec3(offset + glm::dvec3(0, 4000, 0)), kDown));
     const std::uint32_t floor = add_floor(scene.mesh, offset, 4000);
     add_closed_box(scene.mesh, offset + glm::dvec3(-400, 800, -400),
                    offset + glm::dvec3(400, 1600, 400));

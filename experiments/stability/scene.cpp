@@ -42,19 +42,21 @@ void add_triangle(TriangleMesh& mesh, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) 
 }
 
 std::uint32_t add_floor(TriangleMesh& mesh, glm::dvec3 center, double half_side) {
-    const auto corner = [&](int x, int z) {
-        return center + half_side * glm::dvec3(x, 0, z);
-    };
+    const auto corner = [&](int x, int z) { return center + half_side * glm::dvec3(x, 0, z); };
     scenes::add_quad(mesh, {corner(-1, -1), corner(-1, 1), corner(1, 1), corner(1, -1)});
     return static_cast<std::uint32_t>(mesh.triangle_count() - 2);
 }
 
-std::uint32_t floor_at(std::uint32_t first, double x, double z) { return z >= x ? first : first + 1; }
+std::uint32_t floor_at(std::uint32_t first, double x, double z) {
+    return z >= x ? first : first + 1;
+}
 
 void add_closed_box(TriangleMesh& mesh, glm::dvec3 lower, glm::dvec3 upper) {
     scenes::add_box(mesh, lower, upper);
-    scenes::add_quad(mesh, {glm::dvec3(lower.x, lower.y, lower.z), {upper.x, lower.y, lower.z},
-                            {upper.x, lower.y, upper.z}, {lower.x, lower.y, upper.z}});
+    scenes::add_quad(mesh, {glm::dvec3(lower.x, lower.y, lower.z),
+                            {upper.x, lower.y, lower.z},
+                            {upper.x, lower.y, upper.z},
+                            {lower.x, lower.y, upper.z}});
 }
 
 void add_cable(TriangleMesh& mesh, glm::dvec3 a, glm::dvec3 b, double radius, std::size_t sides) {
