@@ -35,10 +35,10 @@ Scenes repeated_triangle(Light::Type type) {
     scene.mesh.triangles.resize(100'000, scene.mesh.triangles[0]);
     scene.essential = 1;
     for (int i = 0; i < 256; ++i) {
-        const glm::dvec3 q((i % 16 - 7.5) * 0.2, -3, (i / 16 - 7.5) * 0.2);
+        const glm::dvec3 q((i % 16 - 7.5) * 0.25, -3, (i / 16 - 7.5) * 0.25);
         ask(scene, behind(scene.light, q, 2),
-            glm::length(q - glm::dvec3(0, -3, 0)) < 0.35  ? shadowed
-            : glm::length(q - glm::dvec3(0, -3, 0)) > 1.9 ? lit
+            glm::length(q - glm::dvec3(0, -3, 0)) < 0.48  ? shadowed
+            : glm::length(q - glm::dvec3(0, -3, 0)) > 1.6 ? lit
                                                           : unsaid);
     }
     return {scene};

@@ -34,6 +34,6 @@ TEST_P(BvhStability, PassesTheSuite) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Query, BvhStability, testing::Values("beam", "packet", "lane"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& query) { return std::string(query.param); });
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST_P(EveryTest, VariationsKeepTheAnswers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(StressSuite, EveryTest, testing::ValuesIn(suite().begin(), suite().end()),
-                         [](const auto& info) { return "T" + info.param.label(); });
+                         [](const auto& test) { return "T" + test.param.label(); });
 
 TEST(Variations, KindsAndLimits) {
     const experiments::config::Stability config{{}, 3, 2, {0.5, 2, 4}};
@@ -151,13 +151,13 @@ TEST(Variations, AScaleSparesNothing) {
 TEST(Judge, ContradictionIsAnError) {
     Scene scene = small_scene(point_light({1, 9, 2}));
     scene.essential = 0;
-    ask(scene, {0.5, 0, 0.5}, Expected::shadowed);
+    ask(scene, {0.5, 0.25, 0.5}, Expected::shadowed);
     EXPECT_NO_THROW(judge(scene, true));
     scene.points.back().expected = Expected::lit;
     EXPECT_THROW(judge(scene, true), std::runtime_error);
     // The box counts, for it casts: declaring only the floor essential is wrong.
     scene.points.pop_back();
-    ask(scene, {0.5, 0, 0.5}, Expected::unsaid);
+    ask(scene, {0.5, 0.25, 0.5}, Expected::unsaid);
     scene.essential = 2;
     EXPECT_THROW(judge(scene, true), std::runtime_error);
 }
@@ -165,7 +165,7 @@ TEST(Judge, ContradictionIsAnError) {
 TEST(Judge, MarksCountAndFindTheWorst) {
     Scene scene = small_scene(point_light({1, 9, 2}));
     scene.essential = 0;
-    ask(scene, {0.5, 0, 0.5}, Expected::shadowed);
+    ask(scene, {0.5, 0.25, 0.5}, Expected::shadowed);
     const JudgedScene judged = judge(scene, true);
     shadows::Visibility visible{std::vector<std::uint32_t>(shadows::kTilePoints / 32, 0xffffffffu)};
     Marks marks = judged.mark(visible);
@@ -173,7 +173,7 @@ TEST(Judge, MarksCountAndFindTheWorst) {
     EXPECT_FALSE(marks.passed());
     ASSERT_TRUE(marks.worst);
     EXPECT_TRUE(marks.worst->called_lit);
-    EXPECT_EQ(marks.worst->position, glm::vec3(0.5f, 0, 0.5f));
+    EXPECT_EQ(marks.worst->position, glm::vec3(0.5f, 0.25f, 0.5f));
     EXPECT_EQ(marks.worst->severity, 3);
     visible.words[place_in_image(2) / 32] &= ~(1u << place_in_image(2) % 32);
     marks = judged.mark(visible);
