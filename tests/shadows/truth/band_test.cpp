@@ -145,6 +145,22 @@ TEST(Band, CountsMultiplicity) {
         << "one on each";
 }
 
+// Two pages continue each other; the third, hanging almost in the light's direction, is the point's
+// own, and what the others make of their common edge is all that counts.
+TEST(Band, LeavesTheOwnTriangleOutOfItsEdges) {
+    const TriangleMesh book{{{-1, 1, 0}, {1, 1, 0}, {0, 1, 2}, {0, 1, -2}, {0, -5, 1e-6f}},
+                            {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}};
+    const Truth sun(book, {Light::Type::directional, {0, -1, 0}});
+    EXPECT_TRUE(judge(sun, {{0, -2, 0.5e-6f}, 2}).certain());
+    EXPECT_TRUE(judge(sun, {{0, -2, 0.5e-6f}, kNoReceiver}).ambiguous());
+
+    const Truth lamp(book, {Light::Type::point, {0, 1, 0.5f}});
+    EXPECT_TRUE(judge(lamp, {{0.5f, -2, 0}, 1}).ambiguous()) << "the light lies on a page";
+    const TriangleMesh page{book.positions, {{0, 1, 2}}};
+    EXPECT_TRUE(judge(Truth(page, {Light::Type::point, {0, 1, 0.5f}}), {{0, 1, 1}, 0}).certain())
+        << "it lies on the point's own";
+}
+
 // A point rounded to the wrong side of a slanted floor is shadowed by the neighbours of its own
 // triangle, at grazing light far from it. Such points are within rounding.
 TEST(Band, HoldsPointsThatRoundedBelowTheirFloor) {

@@ -95,6 +95,30 @@ TEST(Candidates, OfNothingAndOfOne) {
     EXPECT_TRUE(visited(Candidates(mesh, casters), Path({0, 0.5, 0}, {0, 0, 0}, 1, 1e-3), 1)[0]);
 }
 
+TEST(Candidates, AtExactlyTheRadius) {
+    Random random(2);
+    for (int i = 0; i < 2000; ++i) {
+        // On a grid, so that the path passes the corner that is farthest along `side` at exactly
+        // the radius.
+        TriangleMesh mesh{{}, {{0, 1, 2}}};
+        for (int k = 0; k < 3; ++k)
+            mesh.positions.push_back(glm::round(64.0f * in_cube(random, 1)));
+        if (mesh.degenerate(0)) continue;
+        const int side = static_cast<int>(random() % 3), along = (side + 1 + random() % 2) % 3;
+        glm::vec3 p = mesh.positions[0], towards(0);
+        for (const glm::vec3& v : mesh.positions)
+            if (v[side] > p[side]) p = v;
+        const float radius = std::ldexp(1.0f, -static_cast<int>(random() % 12));
+        p[side] += radius;
+        p[along] -= 16;
+        towards[along] = 16;  // ends beside the corner
+        const std::uint32_t casters[] = {0};
+        EXPECT_TRUE(visited(Candidates(mesh, casters), Path(p, towards, 1, radius), 1)[0]);
+        towards[side] = -0x1p-20f * radius;
+        EXPECT_TRUE(visited(Candidates(mesh, casters), Path(p, towards, 1, radius), 1)[0]);
+    }
+}
+
 TEST(Candidates, StopWhenAskedTo) {
     const TriangleMesh mesh = floor_mesh(1, 0, 8);
     const Candidates candidates(mesh, sound_triangles(mesh));

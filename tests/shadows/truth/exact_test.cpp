@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <limits>
+#include <random>
 
 #include "tests/shadows/truth/oracle.hpp"
 
@@ -87,6 +88,32 @@ RC_GTEST_PROP(Signs, OfNearlyStraightTriples, ()) {
     const glm::vec3 a = vector_of(grid_float), b = vector_of(grid_float) * 3.7f;
     const float t = float(*rc::gen::inRange(-64, 65)) / 48;
     expect_signs(a, b, jitter(a + t * (b - a)), vector_of(grid_float));
+}
+
+// The filter alone, on planes through the origin seen from points so near it that differences in
+// double precision lose them in part or altogether.
+TEST(Signs, FilterAgreesWithIntegers) {
+    std::mt19937 random(1);
+    std::uniform_int_distribution<int> coordinate(-1000, 1000), factor(-20, 20), place(10, 80);
+    const auto vector = [&] {
+        const int x = coordinate(random), y = coordinate(random);
+        return glm::vec3(x, y, coordinate(random));
+    };
+    Signs signs;
+    int zeros = 0;
+    for (int i = 0; i < 100000; ++i) {
+        const glm::vec3 a = vector(), b = vector();
+        const glm::vec3 c = float(factor(random)) * a + float(factor(random)) * b;
+        glm::vec3 o(0);
+        o[i % 3] = std::ldexp(random() % 2 ? 1.0f : -1.0f, -place(random));
+        const int expected = exact_orientation(a, b, c, o);
+        ASSERT_EQ(orientation(a, b, c, o, signs), expected);
+        ASSERT_EQ(orientation_towards(a, b, c, o, signs), exact_orientation_towards(a, b, c, o));
+        zeros += expected == 0;
+    }
+    EXPECT_GT(signs.exact, 10000u);
+    EXPECT_GT(signs.filtered, 10000u);
+    EXPECT_LT(zeros, 10000);
 }
 
 TEST(Signs, AreCounted) {
