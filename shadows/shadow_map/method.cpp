@@ -1,0 +1,83 @@
+// The shadow map as a shadow method; see map.hpp.
+#include "shadows/method.hpp"
+#include "shadows/shadow_map/map.hpp"
+
+namespace shadows::shadow_map {
+namespace {
+
+using structures::Parameter;
+using structures::Samples;
+using structures::Settings;
+using structures::geometry::Light;
+using structures::geometry::TriangleMesh;
+
+class ShadowMapMethod final : public Method {
+  public:
+    ShadowMapMethod(taskpool::gpu::Device& device, const MapConfig& config)
+        : map_(device, config) {}
+
+    void prepare(const TriangleMesh& mesh) override { map_.load(mesh); }
+    /// build_ms (bounds, drawing, copying to where kernels read), memory_bytes, faces.
+    Samples build(const Light& light) override {
+        const double milliseconds = map_.render(light);
+        return {{"build_ms", milliseconds, "ms"},
+                {"memory_bytes", double(map_.memory_bytes()), "bytes"},
+                {"faces", double(map_.faces())}};
+    }
+    Samples query(const Points& points, Visibility& visible) override {
+        return {{"query_ms", map_.look_up(points, visible), "ms"}};
+    }
+
+  private:
+    ShadowMap map_;
+};
+
+std::span<const Parameter> parameters() {
+    static const std::vector<Parameter> all = {
+        {"resolution",
+         std::int64_t{MapConfig{}.resolution},
+         "texels along a side of each map",
+         {},
+         512,
+         8192},
+        {"bias_mode",
+         std::string("slope"),
+         "what keeps surfaces from shadowing themselves",
+         {"constant", "slope", "receiver_plane"}},
+        {"bias",
+         double{MapConfig{}.bias},
+         "in texels: stored depths move away from the light by so many widths of a texel, or with "
+         "'slope' by what a triangle's depth changes over so many",
+         {},
+         0,
+         1024},
+    };
+    return all;
+}
+
+MapConfig map_config(const Settings& settings) {
+    const std::string& mode = settings.text("bias_mode");
+    MapConfig config;
+    config.resolution = static_cast<std::uint32_t>(settings.integer("resolution"));
+    config.bias_mode = mode == "constant" ? BiasMode::constant
+                       : mode == "slope"  ? BiasMode::slope
+                                          : BiasMode::receiver_plane;
+    config.bias = static_cast<float>(settings.real("bias"));
+    return config;
+}
+
+std::unique_ptr<Method> create(taskpool::gpu::Device& device, const Settings& settings) {
+    return std::make_unique<ShadowMapMethod>(device, map_config(settings));
+}
+
+}  // namespace
+
+std::span<const MethodRow> rows() {
+    static const MethodRow all[] = {
+        {"shadow_map", "depth rasterised from the light, one tap per point; approximate",
+         &parameters, &create},
+    };
+    return all;
+}
+
+}  // namespace shadows::shadow_map
