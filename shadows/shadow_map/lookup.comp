@@ -42,12 +42,9 @@ float depth_on_plane(View view, vec3 q, vec3 normal, vec2 offset) {
            kSnap * abs(change) * dot(abs(normal.xy), texel);
 }
 
+// Zero for a triangle without area: such a receiver has no plane.
 vec3 normal_of(uint primitive, uint face) {
-    const uvec3 corners = Uvec3Array(push.triangles).at[primitive];
-    const vec3 a = Vec3Array(push.positions).at[corners.x];
-    const vec3 ab = Vec3Array(push.positions).at[corners.y] - a;
-    const vec3 ac = Vec3Array(push.positions).at[corners.z] - a;
-    return cross(view_coordinates(push.frame, face, ab), view_coordinates(push.frame, face, ac));
+    return view_coordinates(push.frame, face, Vec3Array(push.normals).at[primitive]);
 }
 
 bool shadowed(vec3 p, uint primitive, View views[kFaces]) {

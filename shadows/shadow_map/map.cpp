@@ -33,6 +33,17 @@ bool casts(const TriangleMesh& mesh, std::size_t triangle) {
     return !mesh.degenerate(triangle);
 }
 
+/// By primitive id, of unit length; 0 where there is none.
+std::vector<glm::vec3> normals(const TriangleMesh& mesh) {
+    std::vector<glm::vec3> all(mesh.triangle_count(), glm::vec3(0));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!casts(mesh, i)) continue;
+        const glm::dvec3 a = mesh.corner(i, 0), b = mesh.corner(i, 1), c = mesh.corner(i, 2);
+        all[i] = glm::normalize(glm::cross(b - a, c - a));
+    }
+    return all;
+}
+
 }  // namespace
 
 ShadowMap::ShadowMap(gpu::Device& device, const MapConfig& config)
@@ -68,7 +79,7 @@ void ShadowMap::load(const TriangleMesh& mesh) {
     positions_ = gpu::make_buffer<glm::vec3>(device_, mesh.positions, "shadow map positions");
     triangles_ = gpu::make_buffer<glm::uvec3>(device_, casters, "shadow map triangles");
     if (config_.bias_mode == BiasMode::receiver_plane)
-        receivers_ = gpu::make_buffer<glm::uvec3>(device_, mesh.triangles, "shadow map receivers");
+        normals_ = gpu::make_buffer<glm::vec3>(device_, normals(mesh), "shadow map normals");
     fit_buffer_ = gpu::Buffer(device_, sizeof(Fit), "shadow map bounds");
     view_buffer_ = gpu::Buffer(device_, sizeof(views_), "shadow map views");
 }
@@ -162,9 +173,9 @@ double ShadowMap::draw_maps() {
 double ShadowMap::look_up(const Points& points, Visibility& visible) {
     if (!visible_.handle() || visible_.size() != points.count() / 8)
         visible_ = gpu::Buffer(device_, points.count() / 8, "visibility");
-    const LookupPush push{points.address(), visible_.address(),   view_buffer_.address(),
-                          maps_.address(),  positions_.address(), receivers_.address(),
-                          frame_,           config_.resolution,   points.count()};
+    const LookupPush push{points.address(),   visible_.address(), view_buffer_.address(),
+                          maps_.address(),    normals_.address(), frame_,
+                          config_.resolution, points.count()};
     constexpr std::uint32_t kRow = 1u << 12;
     const std::uint32_t tiles = points.count() / kTilePoints;
     times_.clear();
@@ -185,7 +196,7 @@ std::uint32_t ShadowMap::faces() const {
 }
 
 std::size_t ShadowMap::memory_bytes() const {
-    return positions_.size() + triangles_.size() + receivers_.size() + casters_.size() +
+    return positions_.size() + triangles_.size() + normals_.size() + casters_.size() +
            maps_.size() + (target_.handle() ? map_bytes() : 0);
 }
 

@@ -62,7 +62,7 @@ class ShadowMap {
     taskpool::gpu::Timestamps times_;
 
     taskpool::gpu::Buffer positions_, triangles_;  ///< triangles_ of casters only
-    taskpool::gpu::Buffer receivers_;              ///< every triangle, with receiver planes
+    taskpool::gpu::Buffer normals_;                ///< of every triangle, with receiver planes
     structures::geometry::Aabb bounds_;
     std::uint32_t triangle_count_ = 0;  ///< casters
 

@@ -1,4 +1,6 @@
 // The shadow map as a shadow method; see map.hpp.
+#include <fmt/format.h>
+
 #include "shadows/method.hpp"
 #include "shadows/shadow_map/map.hpp"
 
@@ -32,6 +34,9 @@ class ShadowMapMethod final : public Method {
     ShadowMap map_;
 };
 
+/// `bias` of a config that leaves the choice to us.
+constexpr double kUsualBias = -1;
+
 std::span<const Parameter> parameters() {
     static const std::vector<Parameter> all = {
         {"resolution",
@@ -41,15 +46,16 @@ std::span<const Parameter> parameters() {
          512,
          8192},
         {"bias_mode",
-         std::string("slope"),
+         std::string("receiver_plane"),
          "what keeps surfaces from shadowing themselves",
          {"constant", "slope", "receiver_plane"}},
         {"bias",
-         double{MapConfig{}.bias},
-         "in texels: stored depths move away from the light by so many widths of a texel, or with "
-         "'slope' by what a triangle's depth changes over so many",
+         kUsualBias,
+         "how far stored depths move away from the light: in widths of a texel, or for 'slope' in "
+         "texels of the triangle's own slope (-1: 3 for 'constant', 1 for 'slope', 0.25 for "
+         "'receiver_plane')",
          {},
-         0,
+         kUsualBias,
          1024},
     };
     return all;
@@ -62,7 +68,11 @@ MapConfig map_config(const Settings& settings) {
     config.bias_mode = mode == "constant" ? BiasMode::constant
                        : mode == "slope"  ? BiasMode::slope
                                           : BiasMode::receiver_plane;
-    config.bias = static_cast<float>(settings.real("bias"));
+    const double bias = settings.real("bias");
+    if (bias < 0 && bias != kUsualBias)
+        throw structures::SettingError(
+            "bias", fmt::format("'bias' is {}; expected 0 or more, or -1 for the usual one", bias));
+    config.bias = bias < 0 ? usual_bias(config.bias_mode) : static_cast<float>(bias);
     return config;
 }
 

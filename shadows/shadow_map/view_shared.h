@@ -56,7 +56,7 @@ struct DepthPush {
 struct LookupPush {
     uint64_t points, visible;
     uint64_t views, maps;
-    uint64_t positions, triangles;  // with receiver planes: of the mesh, by primitive id
+    uint64_t normals;  // with receiver planes: by primitive id
     Frame frame;
     uint resolution, point_count;
 };
@@ -67,7 +67,7 @@ static_assert(sizeof(View) == 32);
 static_assert(sizeof(Fit) == 168);
 static_assert(sizeof(FitPush) == 88);
 static_assert(sizeof(DepthPush) == 112);
-static_assert(sizeof(LookupPush) == 104);
+static_assert(sizeof(LookupPush) == 96);
 }  // namespace shadows::shadow_map
 #endif
 #undef GROVE_CONSTANT
