@@ -132,6 +132,7 @@ Config resolve(const Node& root, const std::filesystem::path& file, const Catalo
     config.repeat = int(table.integer("repeat", 1, 100000).value_or(config.repeat));
     config.warmup = int(table.integer("warmup", 0, 100000).value_or(config.warmup));
     config.seed = table.integer("seed", 0, INT64_MAX).value_or(config.seed);
+    config.truth = table.boolean("truth").value_or(config.truth);
     const auto reference = table.text("reference");
     table.finish();
 
@@ -161,6 +162,7 @@ nlohmann::json to_json(const Config& config) {
                            {"repeat", config.repeat},
                            {"warmup", config.warmup},
                            {"seed", config.seed},
+                           {"truth", config.truth},
                            {"scenes", nlohmann::json::array()},
                            {"methods", nlohmann::json::array()}};
     json["reference"] =
