@@ -26,16 +26,21 @@ struct LogAxis {
         return from + (to - from) * (std::log10(value) - std::log10(low)) /
                           (std::log10(high) - std::log10(low));
     }
-    /// Powers of ten within it; with 2 and 5 between them if there are few.
+    /// Powers of ten within it; with 2 and 5 between them if there are few; equal steps if the
+    /// axis is too short for these.
     std::vector<double> ticks() const {
         const int first = int(std::floor(std::log10(low))), last = int(std::ceil(std::log10(high)));
         std::vector<double> list;
+        const auto add = [&](double value) {
+            if (value >= low * 0.999 && value <= high * 1.001) list.push_back(value);
+        };
         for (int power = first; power <= last; ++power)
-            for (const double step : {1.0, 2.0, 5.0}) {
-                const double value = step * std::pow(10, power);
-                if (step > 1 && last - first > 3) continue;
-                if (value >= low * 0.999 && value <= high * 1.001) list.push_back(value);
-            }
+            for (const double step : {1.0, 2.0, 5.0})
+                if (step == 1 || last - first <= 3) add(step * std::pow(10, power));
+        if (list.size() >= 3) return list;
+        list.clear();
+        const double step = std::pow(10, std::floor(std::log10((high - low) / 2)));
+        for (double value = std::ceil(low / step) * step; value <= high; value += step) add(value);
         return list;
     }
 };
