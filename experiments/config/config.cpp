@@ -133,6 +133,7 @@ Config resolve(const Node& root, const std::filesystem::path& file, const Catalo
     config.warmup = int(table.integer("warmup", 0, 100000).value_or(config.warmup));
     config.seed = table.integer("seed", 0, INT64_MAX).value_or(config.seed);
     config.truth = table.boolean("truth").value_or(config.truth);
+    config.pictures = table.boolean("pictures").value_or(config.pictures);
     const auto reference = table.text("reference");
     table.finish();
 
@@ -163,6 +164,7 @@ nlohmann::json to_json(const Config& config) {
                            {"warmup", config.warmup},
                            {"seed", config.seed},
                            {"truth", config.truth},
+                           {"pictures", config.pictures},
                            {"scenes", nlohmann::json::array()},
                            {"methods", nlohmann::json::array()}};
     json["reference"] =

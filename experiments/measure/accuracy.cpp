@@ -74,8 +74,7 @@ void check_claims(Session& session) {
         if (worst(result, "claims_exact") == 0 || lit + dark == 0) continue;
         session.fail(
             fmt::format("{}, {} {}: claims to be exact, but answers {} points falsely lit "
-                        "and {} falsely shadowed outside the rounding band; see its "
-                        "picture 'errors'",
+                        "and {} falsely shadowed outside the rounding band",
                         result.scene, result.method, result.variant, lit, dark));
     }
 }

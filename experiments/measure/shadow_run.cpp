@@ -88,7 +88,7 @@ class SceneRun {
         for (int i = 0; i < session_.config.repeat; ++i)
             for (Contestant& contestant : contestants_) attempt(contestant, input, i);
 
-        draw(input);
+        if (session_.config.pictures) draw(input);
         // A scene with a failure stays open, so that --resume tries it again.
         for (const Contestant& contestant : contestants_)
             if (!contestant.method) return;

@@ -22,8 +22,9 @@ constexpr std::size_t kSeries = 8;
 /// A logarithmic axis from `low` to `high` on the values' side, `from` to `to` on the page's.
 struct LogAxis {
     double low, high, from, to;
+    /// Values beyond an end lie on it.
     double at(double value) const {
-        return from + (to - from) * (std::log10(value) - std::log10(low)) /
+        return from + (to - from) * (std::log10(std::clamp(value, low, high)) - std::log10(low)) /
                           (std::log10(high) - std::log10(low));
     }
     /// Powers of ten within it; with 2 and 5 between them if there are few; equal steps if the
@@ -47,7 +48,7 @@ struct LogAxis {
 
 /// "0.05", "200", "10,000", "1e-06".
 std::string tick_text(double value) {
-    if (value < 1e-3 || value > 1e6) return fmt::format("{:.0e}", value);
+    if (value < 1e-3 || value > 1e6) return fmt::format("{:.3g}", value);
     return value >= 1 ? measure::readable(std::round(value), "1") : fmt::format("{:g}", value);
 }
 
@@ -169,11 +170,10 @@ class Chart {
                 "<path class=\"span s{0}\" d=\"M{1:.1f} {3:.1f}H{2:.1f}\"/>"
                 "<path class=\"mark s{0}{4}\" d=\"{5}\"><title>{6} {7}: {8}, {9:.4g} "
                 "errors per million</title></path>\n",
-                series % kSeries, x_.at(std::max(one.milliseconds.min, x_.low)),
-                x_.at(one.milliseconds.max), y(one), one.claims_exact ? "" : " open",
-                mark_path(series, x(one), y(one)), escape(one.result->method),
-                escape(one.result->variant), measure::readable(one.milliseconds.median, "ms"),
-                one.errors);
+                series % kSeries, x_.at(one.milliseconds.min), x_.at(one.milliseconds.max), y(one),
+                one.claims_exact ? "" : " open", mark_path(series, x(one), y(one)),
+                escape(one.result->method), escape(one.result->variant),
+                measure::readable(one.milliseconds.median, "ms"), one.errors);
         }
         return svg;
     }
@@ -210,7 +210,7 @@ class Chart {
 
   private:
     double zero() const { return kHeight - kBottom; }
-    double x(const Tradeoff& one) const { return x_.at(std::max(one.milliseconds.median, x_.low)); }
+    double x(const Tradeoff& one) const { return x_.at(one.milliseconds.median); }
     double y(const Tradeoff& one) const { return one.errors > 0 ? y_.at(one.errors) : zero(); }
     std::size_t series_of(const Tradeoff& one) const {
         return std::size_t(std::find(methods_.begin(), methods_.end(), one.result->method) -

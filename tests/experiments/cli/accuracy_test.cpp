@@ -109,6 +109,9 @@ TEST_F(AccuracyTest, TruthCanBeLeftOut) {
     EXPECT_FALSE(has_metric("r", "truth_ms"));
     EXPECT_FALSE(fs::exists(folder_ / "r/pareto.csv"));
     EXPECT_FALSE(fs::exists(folder_ / "cache"));
+    ASSERT_EQ(run_city("--out p --set experiment.pictures=false").code, 0);
+    EXPECT_TRUE(has_metric("p", "false_lit"));
+    EXPECT_TRUE(fs::is_empty(folder_ / "p/images"));
     expect_error(run_city("--out s --set experiment.truth=7"), 2,
                  {"experiment.truth", "true or false"});
 }
