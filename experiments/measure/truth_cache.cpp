@@ -62,7 +62,7 @@ std::string truth_key(const structures::geometry::TriangleMesh& mesh,
     for (const std::string_view part : {bytes_of(mesh.positions), bytes_of(mesh.triangles),
                                         bytes_of(points.x), bytes_of(points.y), bytes_of(points.z),
                                         bytes_of(points.primitive), bytes_of(points.normal)})
-        parts += " " + sha256(part);
+        parts += sha256(part);
     return sha256(parts);
 }
 
