@@ -138,6 +138,8 @@ Config resolve(const Node& root, const std::filesystem::path& file, const Catalo
     } else {
         config.repeat = int(table.integer("repeat", 1, 100000).value_or(config.repeat));
         config.warmup = int(table.integer("warmup", 0, 100000).value_or(config.warmup));
+        config.truth = table.boolean("truth").value_or(config.truth);
+        config.pictures = table.boolean("pictures").value_or(config.pictures);
         reference = table.text("reference");
     }
     table.finish();
@@ -171,6 +173,8 @@ nlohmann::json to_json(const Config& config) {
                            {"repeat", config.repeat},
                            {"warmup", config.warmup},
                            {"seed", config.seed},
+                           {"truth", config.truth},
+                           {"pictures", config.pictures},
                            {"scenes", nlohmann::json::array()},
                            {"methods", nlohmann::json::array()}};
     json["reference"] =
