@@ -22,6 +22,7 @@ h3 { font-size: 1rem; margin: 1.5rem 0 .5rem; color: var(--soft); font-weight: 6
 p { margin: .25rem 0; } .soft { color: var(--soft); } .bad { color: var(--bad); }
 .scroll { overflow-x: auto; background: var(--card); border: 1px solid var(--line);
   border-radius: .5rem; }
+.scroll + .scroll { margin-top: 1rem; }
 table { border-collapse: collapse; width: 100%; font-size: .9rem; }
 th, td { padding: .4rem .75rem; text-align: right; border-bottom: 1px solid var(--line);
   white-space: nowrap; font-variant-numeric: tabular-nums; }

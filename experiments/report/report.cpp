@@ -142,6 +142,7 @@ std::string pareto(const Results& results) {
 std::string pictures(const std::filesystem::path& run, const nlohmann::json& manifest,
                      const std::string& scene) {
     std::string first, rest;
+    bool any_errors = false;
     const std::string reference = manifest.at("config").value("reference", "");
     for (const auto& image : manifest.value("images", nlohmann::json::array())) {
         const std::string kind = image.at("kind"), method = image.at("method"),
@@ -149,13 +150,18 @@ std::string pictures(const std::filesystem::path& run, const nlohmann::json& man
         const bool common = kind == "shaded" || kind == "visibility";
         if (image.at("scene") != scene || !std::filesystem::exists(run / file)) continue;
         if (common && label(method, variant) != reference) continue;
+        any_errors = any_errors || kind == "errors";
         (common ? first : rest) += fmt::format(
             "<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}: {} {}</figcaption></figure>\n",
             png_data_uri(run / file), escape(fmt::format("{} of {}", kind, scene)), escape(kind),
             escape(method), escape(variant));
     }
     if (first.empty() && rest.empty()) return {};
-    return "<h3>Pictures</h3>\n<div class=\"pictures\">\n" + first + rest + "</div>\n";
+    const std::string legend =
+        "<p class=\"soft\">errors: red falsely lit, blue falsely shadowed, "
+        "yellow wrong within the rounding band; few are drawn as dots.</p>\n";
+    return "<h3>Pictures</h3>\n" + (any_errors ? legend : std::string()) +
+           "<div class=\"pictures\">\n" + first + rest + "</div>\n";
 }
 
 std::string facts_table(const std::vector<std::pair<std::string, std::string>>& facts) {
