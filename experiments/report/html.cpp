@@ -111,6 +111,13 @@ std::string png_data_uri(const std::filesystem::path& file) {
     return "data:image/png;base64," + base64(bytes);
 }
 
+std::string standalone_svg(const std::string& svg) {
+    const std::size_t inside = svg.find('>') + 1;
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\"" + svg.substr(4, inside - 4) + "<style>" +
+           kStyle + "svg { background: var(--card); } svg.pareto { min-width: 0; }</style>" +
+           svg.substr(inside);
+}
+
 std::string document_head(const std::string& title) {
     return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +

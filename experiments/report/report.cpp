@@ -129,10 +129,16 @@ std::string charts(const Results& results) {
     return html.empty() ? html : "<div class=\"charts\">\n" + html + "</div>\n";
 }
 
-std::string pareto(const Results& results) {
+/// The plot in the page, and as a file for other pages.
+std::string pareto(const std::filesystem::path& run, const std::string& scene,
+                   const Results& results) {
     const std::vector<Tradeoff> tradeoffs = find_tradeoffs(results);
     if (tradeoffs.size() < 2) return {};
-    return "<div class=\"scroll\">\n" + pareto_chart("Run time against error", tradeoffs) +
+    const std::string svg = pareto_chart(scene + ": run time against error", tradeoffs);
+    std::filesystem::create_directories(run / "images");  // recorded runs may lack it
+    measure::write_text(run / "images" / (measure::file_name(scene) + "-pareto.svg"),
+                        standalone_svg(svg));
+    return "<div class=\"scroll\">\n" + svg +
            "</div>\n<p class=\"soft\">Line: the Pareto front. Filled marks: methods that claim "
            "to be exact. Through each mark: fastest to slowest repetition. Logarithmic; errors "
            "outside the rounding band alone.</p>\n";
@@ -221,7 +227,7 @@ std::string scene_section(const std::filesystem::path& run, const nlohmann::json
         html += fmt::format("<p class=\"soft\">{}</p>\n",
                             escape(fmt::format("{}", fmt::join(parts, " · "))));
     }
-    if (!results.empty()) html += table(results) + pareto(results) + charts(results);
+    if (!results.empty()) html += table(results) + pareto(run, scene, results) + charts(results);
     return html + pictures(run, manifest, scene) + "</section>\n";
 }
 
