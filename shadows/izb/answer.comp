@@ -5,7 +5,8 @@
 #include "shadows/izb/frame.glsl"
 
 void main() {
-    const uint tile = gl_WorkGroupID.x;
+    const uint tile = workgroup();
+    if (tile >= push.point_count / kTilePoints) return;
     uint lit = 0;
     [[unroll]] for (uint k = 0; k < kSlots; ++k) {
         const uint place = push.places.at[tile_point(tile, k)];

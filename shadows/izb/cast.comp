@@ -40,8 +40,7 @@ uint farthest_of(Cells cells, uint face) {
 }
 
 void main() {
-    const uint index = push.job.x + gl_WorkGroupID.y * gl_NumWorkGroups.x * gl_SubgroupSize +
-                       gl_WorkGroupID.x * gl_SubgroupSize + lane();
+    const uint index = push.job.x + workgroup() * gl_SubgroupSize + lane();
     const vec3 origin = push.frame.at.origin;
     const float scale = push.frame.at.scale;
     const vec2 tilt = push.frame.at.tilt;

@@ -121,8 +121,11 @@ uint primitive_of(uint point) {
     return floatBitsToUint(push.points.at[3 * push.point_count + point]);
 }
 
+// Index of this workgroup in a dispatch of one or two dimensions; there may be surplus ones.
+uint workgroup() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+
 // The run of points of this workgroup: job.x each.
-uint run_begin() { return gl_WorkGroupID.x * push.job.x; }
+uint run_begin() { return min(workgroup() * push.job.x, push.point_count); }
 uint run_end() { return min(run_begin() + push.job.x, push.point_count); }
 
 #endif

@@ -53,7 +53,8 @@ std::uint32_t divide_up(std::uint32_t count, std::uint32_t by) { return (count +
 /// Dispatches at least `groups` workgroups; kernels tell surplus ones by their index.
 template <typename Push>
 void dispatch(Recorder& recorder, const Kernel& kernel, const Push& push, std::uint32_t groups) {
-    recorder.dispatch(kernel, push, std::min(groups, kMaxGroups), divide_up(groups, kMaxGroups));
+    const std::uint32_t rows = divide_up(groups, kMaxGroups);
+    recorder.dispatch(kernel, push, divide_up(groups, rows), rows);
 }
 
 /// Makes `buffer` at least so large; what it held may be lost.
@@ -188,8 +189,8 @@ Grid Query::bin(const Points& points, QueryResult& result) {
     submit(result, [&](Recorder& recorder) {
         recorder.fill(extents_, 0);
         recorder.barrier();
-        recorder.dispatch(kernel.bounds,
-                          make_push(points).with_address(kRunPoints, extents_.address()), runs);
+        dispatch(recorder, kernel.bounds,
+                 make_push(points).with_address(kRunPoints, extents_.address()), runs);
     });
     Extents extents;
     extents_.read(&extents, sizeof(extents));
@@ -202,18 +203,18 @@ Grid Query::bin(const Points& points, QueryResult& result) {
         recorder.fill(cells_, 0);
         recorder.fill(farthest_, 0xffffffffu);
         recorder.barrier();
-        recorder.dispatch(kernel.count, push, runs);
+        dispatch(recorder, kernel.count, push, runs);
         recorder.barrier();
         scan_.record(recorder, cells_, cells_, grid.frame.cell_count + 1, scratch_);
-        recorder.dispatch(kernel.scatter, push, runs);
+        dispatch(recorder, kernel.scatter, push, runs);
         for (std::uint32_t level = 1; level < grid.level_count; ++level) {
             for (std::uint32_t f = 0; f < kFaces; ++f) {
                 const IzbFace& face = grid.frame.faces[f];
                 if (level >= face.level_count) continue;
                 const std::uint32_t nodes = 1u << (std::max(face.log_width, level) - level +
                                                    std::max(face.log_height, level) - level);
-                recorder.dispatch(kernel.reduce, push.with(f, level),
-                                  divide_up(nodes, device_.subgroup_size()));
+                dispatch(recorder, kernel.reduce, push.with(f, level),
+                         divide_up(nodes, device_.subgroup_size()));
             }
             recorder.barrier();
         }
@@ -286,8 +287,8 @@ QueryResult Query::run(const Points& points, Visibility& visible) {
     const Grid grid = bin(points, result);
     if (grid.frame.cell_count > 0) shadow(points, result);
     submit(result, [&](Recorder& recorder) {
-        recorder.dispatch(kernels().answer, make_push(points).with_address(0, visible_.address()),
-                          points.count() / kTilePoints);
+        dispatch(recorder, kernels().answer, make_push(points).with_address(0, visible_.address()),
+                 points.count() / kTilePoints);
     });
     visible.words = taskpool::gpu::read<std::uint32_t>(visible_, points.count() / 32);
     return result;

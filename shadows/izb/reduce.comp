@@ -11,7 +11,7 @@ void main() {
     const uint height = 1u << (max(log_height, level) - level);
     const uint child_width = 1u << (max(log_width, level - 1) - (level - 1));
     const uint child_height = 1u << (max(log_height, level - 1) - (level - 1));
-    const uint node = gl_WorkGroupID.x * gl_SubgroupSize + lane();
+    const uint node = workgroup() * gl_SubgroupSize + lane();
     if (node >= width * height) return;
     const uint log_row = max(log_width, level) - level;
     const uint x = 2 * (node & (width - 1)), y = 2 * (node >> log_row);
