@@ -175,7 +175,8 @@ void Query::allocate_cells(const Grid& grid) {
     // it, and a range for each cell and another for each kRangePoints points.
     const std::size_t blocks =
         kFaces * std::size_t{kMaxResolution >> kTileLog} * ((kMaxResolution / kRowCells) + 1);
-    const std::size_t entries = config_.entries > 0 ? config_.entries : 2 * triangle_count_;
+    const std::size_t entries =
+        config_.entries > 0 ? config_.entries : 4 * std::size_t{triangle_count_};
     grow(device_, entries_, std::max(entries, blocks) * sizeof(IzbEntry), "izb entries");
     const std::size_t pieces = cells + keys_.size() / 4 / kRangePoints + 1;
     grow(device_, ranges_, std::max<std::size_t>(config_.ranges, pieces) * sizeof(IzbRange),

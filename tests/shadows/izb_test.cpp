@@ -134,12 +134,13 @@ struct Answer {
 
 /// The query of that configuration; kept, since making one compiles its kernels.
 Query& query_with(const QueryConfig& config) {
+    taskpool::gpu::Device& device = tests::device();  // before the list, to outlive it
     static std::list<std::pair<QueryConfig, Query>> queries;
     for (auto& [known, query] : queries)
         if (known == config) return query;
     return queries
         .emplace_back(std::piecewise_construct, std::forward_as_tuple(config),
-                      std::forward_as_tuple(tests::device(), config))
+                      std::forward_as_tuple(device, config))
         .second;
 }
 
