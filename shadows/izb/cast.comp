@@ -39,6 +39,13 @@ uint farthest_of(Cells cells, uint face) {
                    push.farthest.at[node + high.y * row + high.x]));
 }
 
+// Where `count` entries go. A list that has overflowed is not counted further, lest the count
+// wraps.
+uint reserve(uint count) {
+    const uint listed = push.status.at.entry_count;
+    return listed > push.job.z ? listed : atomicAdd(push.status.at.entry_count, count);
+}
+
 void main() {
     const uint index = push.job.x + workgroup() * gl_SubgroupSize + lane();
     const vec3 origin = push.frame.at.origin;
@@ -81,7 +88,7 @@ void main() {
         const uint count = !keep ? 0u : small ? 1u : rows * pieces;
         const uint before = subgroupExclusiveAdd(count), total = subgroupAdd(count);
         uint base = 0;
-        if (lane() == 0) base = atomicAdd(push.status.at.entry_count, total);
+        if (lane() == 0) base = reserve(total);
         base = subgroupBroadcastFirst(base) + before;
         const uint caster = index | face << 29;
         for (uint i = 0; i < count; ++i) {

@@ -68,7 +68,7 @@ struct IzbRange {
 };
 
 struct IzbStatus {
-    uint entry_count;  // wanted; those beyond the capacity are not written
+    uint entry_count;  // more than the capacity: some did not fit, and the pass must be repeated
     uint range_count;  // likewise
     uint next_entry;
     uint next_range;

@@ -8,7 +8,11 @@
 void leave_to_ranges(uint begin, uint end) {
     const uint count = (end - begin + kRangePoints - 1u) / kRangePoints;
     uint base = 0;
-    if (lane() == 0) base = atomicAdd(push.status.at.range_count, count);
+    if (lane() == 0) {
+        // A list that has overflowed is not counted further, lest the count wraps.
+        base = push.status.at.range_count;
+        if (base <= push.job.z) base = atomicAdd(push.status.at.range_count, count);
+    }
     base = subgroupBroadcastFirst(base);
     for (uint i = lane(); i < count; i += gl_SubgroupSize) {
         if (base + i >= push.job.z) break;
