@@ -95,7 +95,7 @@ Projected project(vec3 p, vec3 origin, float scale, vec2 tilt, uint only_face) {
         result.v = q.y - q.z * tilt.y;
         result.k = q.z;
         result.reach = norm1(q);
-        result.face = result.reach < kHuge ? only_face : kFaces;
+        result.face = result.reach < 0.25 * kHuge ? only_face : kFaces;  // u and v are finite
         return result;
     }
     const vec3 d = p - origin, size = abs(d);

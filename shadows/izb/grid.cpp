@@ -30,25 +30,30 @@ int dominant_axis(glm::vec3 v) {
 float largest(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
 
 /// Base-two logarithms of a face's cells across and down.
-glm::uvec2 log_cells(glm::dvec2 extent, std::uint32_t points, std::uint32_t resolution) {
-    constexpr double kMost = kLevels - 1;
-    // A side without extent gets a single cell.
-    const double long_side = std::max(extent.x, extent.y);
-    if (!(long_side > 1e-30)) return {0, 0};
-    const glm::dvec2 share = glm::max(extent / long_side, glm::dvec2(1.0 / kMaxResolution));
+glm::uvec2 log_cells(const IzbFace& face, glm::dvec2 extent, std::uint32_t resolution) {
+    // A side no longer than a few roundings of its ends gets a single cell.
+    const auto thin = [&](int i) {
+        const double reach = std::max(std::abs(face.lower[i]), std::abs(face.upper[i]));
+        return !(extent[i] > 1e-30 && extent[i] > reach * 0x1p-20);
+    };
+    const double long_side = std::max(thin(0) ? 0 : extent.x, thin(1) ? 0 : extent.y);
+    const glm::dvec2 share(thin(0) ? 0 : extent.x / long_side, thin(1) ? 0 : extent.y / long_side);
     double side = resolution;
-    if (resolution == 0) side = std::sqrt(points / kPointsPerCell / (share.x * share.y));
+    if (resolution == 0) {
+        side = face.points / kPointsPerCell;
+        if (share.x > 0 && share.y > 0) side = std::sqrt(side / (share.x * share.y));
+    }
     const auto log = [&](double part) {
         const double exact = std::log2(std::max(side * part, 1.0));
-        return std::uint32_t(
-            std::min(resolution == 0 ? std::round(exact) : std::ceil(exact), kMost));
+        const double whole = resolution == 0 ? std::round(exact) : std::ceil(exact);
+        return std::uint32_t(std::min(whole, double(kLevels - 1)));
     };
     return {log(share.x), log(share.y)};
 }
 
 void place_cells(IzbFace& face, std::uint32_t resolution) {
     const glm::dvec2 extent = glm::dvec2(face.upper) - glm::dvec2(face.lower);
-    const glm::uvec2 logs = log_cells(extent, face.points, resolution);
+    const glm::uvec2 logs = log_cells(face, extent, resolution);
     face.log_width = logs.x;
     face.log_height = logs.y;
     face.level_count = std::max(logs.x, logs.y) + 1;

@@ -415,6 +415,18 @@ TEST_F(IzbShadow, CrowdedCells) {
     EXPECT_GT(answer.result.ranges, 0u);
 }
 
+TEST_F(IzbShadow, PointsOnALineAndInOnePlace) {
+    for (const glm::vec3& across : {glm::vec3(1, 0, 0), glm::vec3(0, 1e-7f, 1), glm::vec3(0)}) {
+        Scene scene = soup(new_seed(), 300, 0.5f, 3000);
+        for (std::uint32_t i = 0; i < 3000; ++i)
+            set_point(scene, i, glm::vec3(0, -0.5f, 0.25f) + across * (i / 1500.0f - 1));
+        scene.light.vector = {0, 0.7f, 0.25f};
+        check(scene);
+        check(directional(scene, {0, -1, 0}));
+        check(directional(scene, {0.1f, -1, 0.7f}));
+    }
+}
+
 TEST_F(IzbShadow, FullListsLoseNothing) {
     const Scene scene = soup(41, 300, 1.5f, 3000);
     const std::vector<bool> expected = brute_force(scene);
