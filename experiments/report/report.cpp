@@ -11,6 +11,7 @@
 #include "experiments/report/charts.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/pareto.hpp"
+#include "experiments/report/stability.hpp"
 
 namespace experiments::report {
 namespace {
@@ -241,19 +242,26 @@ void write_report(const std::filesystem::path& run) {
         const auto& config = manifest.at("config");
         const std::string name = config.at("name");
         html = document_head(name + " – Grove");
-        html += fmt::format(
-            "<h1>{}</h1>\n<p class=\"soft\">{} experiment on {} · {} repetitions, "
-            "{} warm-up · {}</p>\n",
-            escape(name), escape(config.at("kind").get<std::string>()),
-            escape(text_of(manifest.at("device"), "name")), config.at("repeat").dump(),
-            config.at("warmup").dump(), escape(text_of(manifest.at("sessions").front(), "start")));
-        html +=
-            "<p class=\"soft\">Medians; below them, and as thin lines in the charts, minimum and "
-            "maximum; thick lines: confidence interval of the median. Green: best of its "
-            "column.</p>\n";
+        const bool stability = config.at("kind") == "stability";
+        const std::string repetitions =
+            fmt::format("{} repetitions, {} warm-up · ", config.at("repeat").dump(),
+                        config.at("warmup").dump());
+        html += fmt::format("<h1>{}</h1>\n<p class=\"soft\">{} experiment on {} · {}{}</p>\n",
+                            escape(name), escape(config.at("kind").get<std::string>()),
+                            escape(text_of(manifest.at("device"), "name")),
+                            stability ? "" : repetitions,
+                            escape(text_of(manifest.at("sessions").front(), "start")));
+        if (!stability)
+            html +=
+                "<p class=\"soft\">Medians; below them, and as thin lines in the charts, minimum "
+                "and maximum; thick lines: confidence interval of the median. Green: best of its "
+                "column.</p>\n";
         html += failures(manifest);
-        for (const std::string& scene : scene_names(results))
-            html += scene_section(run, manifest, results, scene);
+        if (stability)
+            html += stability_section(results);
+        else
+            for (const std::string& scene : scene_names(results))
+                html += scene_section(run, manifest, results, scene);
         html += provenance(manifest) + "</body>\n</html>\n";
     } catch (const nlohmann::json::exception& error) {
         throw std::runtime_error((run / "manifest.json").string() +
