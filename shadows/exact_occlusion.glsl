@@ -29,6 +29,13 @@ uint double_decisions = 0;  // segments and triangles that came here
 uint exact_decisions = 0;   // of these, with a sign that double precision left open
 uint exact_loops = 0;       // loop iterations that this took
 
+// Those since the last call, for walks whose loops are counted.
+uint take_exact_loops() {
+    const uint loops = exact_loops;
+    exact_loops = 0;
+    return loops;
+}
+
 const int kUnsure = 2;
 
 // Side of q, or of the direction q if `w` is 0, of the plane through x, y, z: the sign of
