@@ -31,15 +31,22 @@ Scenes piercing_plate(Light::Type type) {
 
 Scenes repeated_triangle(Light::Type type) {
     Scene scene = make_scene("", either_light(type, kOrigin, kDown));
-    add_triangle(scene.mesh, {-1, -3, -1}, {1, -3.2, -1}, {0, -2.9, 1.5});
-    scene.mesh.triangles.resize(100'000, scene.mesh.triangles[0]);
-    scene.essential = 1;
+    add_triangle(scene.mesh, {-1, -30, -1}, {1, -30.2, -1}, {0, -29.9, 1.5});
+    // Outposts: the copies are a small part of the scene, which rasterisers would otherwise fill
+    // with them 100,000 times.
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec2 c = 50.0 * scenes::unit_circle(i / 8.0);
+        const glm::dvec3 at(c.x, -30, c.y);
+        add_triangle(scene.mesh, at, at + glm::dvec3(0.1, 0, 0), at + glm::dvec3(0, 0, 0.1));
+    }
+    scene.essential = scene.mesh.triangle_count();
+    scene.mesh.triangles.resize(100'000 + scene.essential, scene.mesh.triangles[0]);
     for (int i = 0; i < 256; ++i) {
-        const glm::dvec3 q((i % 16 - 7.5) * 0.25, -3, (i / 16 - 7.5) * 0.25);
+        const glm::dvec3 q((i % 16 - 7.5) * 0.25, -30, (i / 16 - 7.5) * 0.25);
         ask(scene, behind(scene.light, q, 2),
-            glm::length(q - glm::dvec3(0, -3, 0)) < 0.48  ? shadowed
-            : glm::length(q - glm::dvec3(0, -3, 0)) > 1.6 ? lit
-                                                          : unsaid);
+            std::hypot(q.x, q.z) < 0.48  ? shadowed
+            : std::hypot(q.x, q.z) > 1.6 ? lit
+                                         : unsaid);
     }
     return {scene};
 }
