@@ -20,6 +20,8 @@ constexpr Metric kMetrics[] = {
     {"visited_nodes_max", "1", lower, "nodes visited per point, maximum"},
     {"tested_triangles_mean", "1", lower, "triangles tested per point, mean"},
     {"exact_tests_mean", "1", lower, "exact leaf tests per point, mean"},
+    {"fp64_decisions", "1", lower, "point-triangle pairs decided in double precision"},
+    {"exact_decisions", "1", lower, "of these, pairs that needed error-free sums"},
     {"deferred_points", "1", lower, "points that a beam left to a walk of their own"},
     {"groups", "1", lower, "groups of points that beams walked the tree with"},
     {"faces", "1", neither, "shadow maps drawn"},
