@@ -49,6 +49,7 @@ uint beam_primitives;  // which hashes the primitives of its points have
 uint beam_group;     // slots of the group
 uint beam_occluded;  // slots found occluded, of any group
 uint beam_steps;     // loop iterations so far
+uint beam_live;      // sections with slots of the group that are not yet occluded
 uint beam_end;       // why the walk of the group ended
 uint beam_nodes, beam_triangles, beam_exact_tests;
 uint beam_recent = 0xffffffffu;  // a triangle that has occluded a whole group, one per lane
@@ -118,7 +119,7 @@ void beam_test_triangles(uint index, bool used) {
         vec3 a, b, c;
         uint primitive;
         beam_triangle(index, a, b, c, primitive);
-        verdict = classify(a, b, c, mine);
+        verdict = classify(a, b, c, beam_live, mine);
         const bool receives = (primitive_bit(primitive) & beam_primitives) != 0;
         mine.receiver = receives ? primitive : kNoPrimitive;
         if (verdict == kCovers && receives) verdict = kMeets;
@@ -156,7 +157,8 @@ void beam_test_triangles(uint index, bool used) {
         if (kLoopsAreCut && subgroupAny(doubtful != 0)) beam_steps += kSlots;
         if (doubtful != 0) test_exactly(index_from, doubtful);
     }
-    beam_finished = !subgroupAny((beam_group & ~beam_occluded) != 0);
+    beam_live = live_sections(beam_group & ~beam_occluded);
+    beam_finished = beam_live == 0;
 }
 
 // Answers one tile. `origin` is the light, or, for a directional light, a point near the scene;
@@ -197,6 +199,7 @@ TileAnswer answer_tile(uint tile, vec3 origin, float size) {
             beam_group = take_group(todo, beam_light, limit);
             todo &= ~beam_group;
             ++answer.groups;
+            beam_live = live_sections(beam_group);
             beam_group_triangles = 0;
             // What covered a tile lately may well cover this one.
             if (beam_recent_count > 0) beam_test_triangles(beam_recent, beam_recent != 0xffffffffu);

@@ -29,6 +29,14 @@ float scale_for(float size) {
 // are tested against the runs that they can meet.
 const uint kSections = kSlots < 8 ? kSlots : 8;
 const uint kSectionSlots = kSlots / kSections;
+
+// Sections with some of `slots` in any lane: the bit of a section is that of its first slot.
+uint live_sections(uint slots) {
+    uint first = 0;
+    [[unroll]] for (uint s = 0; s < kSections; ++s) first |= 1u << (s * kSectionSlots);
+    [[unroll]] for (uint i = 1; i < kSectionSlots; i *= 2) slots |= slots >> i;
+    return subgroupOr(slots & first);
+}
 vec2 section_lower[kSections], section_upper[kSections];
 
 struct Beam {
