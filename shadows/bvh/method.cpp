@@ -20,8 +20,12 @@ std::vector<Parameter> make_parameters() {
         {"statistics", false, "count nodes and triangles per point (slower)"},
         {"stack", std::int64_t{defaults.stack}, "stack entries of a beam or packet", {}, 1, 32},
         {"list", std::int64_t{defaults.list}, "triangles a beam collects at a time", {}, 64, 4096},
-        {"split", std::int64_t{defaults.split}, "triangles before a group is halved", {}, 1},
-        {"rounds", std::int64_t{defaults.rounds}, "groups a tile may split into", {}, 1, 256},
+        {"density",
+         std::int64_t{defaults.density},
+         "triangles per point a beam may meet",
+         {},
+         0,
+         1e6},
     };
     all.insert(all.end(), std::begin(query), std::end(query));
     return all;
@@ -41,8 +45,7 @@ QueryConfig query_config(const Settings& settings) {
     config.statistics = settings.boolean("statistics");
     config.stack = static_cast<std::uint32_t>(settings.integer("stack"));
     config.list = static_cast<std::uint32_t>(settings.integer("list"));
-    config.split = static_cast<std::uint32_t>(settings.integer("split"));
-    config.rounds = static_cast<std::uint32_t>(settings.integer("rounds"));
+    config.density = static_cast<std::uint32_t>(settings.integer("density"));
     return config;
 }
 
@@ -116,6 +119,7 @@ Samples BvhMethod::query(const Points& points, Visibility& visible) {
         samples.push_back({"tested_triangles_mean", triangles / count});
         samples.push_back({"exact_tests_mean", status.exact_tests / count});
         samples.push_back({"groups", double(status.groups)});
+        samples.push_back({"packet_tiles", double(status.packet_tiles)});
     }
     return samples;
 }

@@ -83,9 +83,8 @@ Kernel Query::kernel(bool directional, bool deferred) const {
                    {5, tiles},
                    {6, device_.info().loop_limit > 0},
                    {7, config_.list},
-                   {8, config_.rounds},
-                   {9, kTilePoints / device_.subgroup_size()},
-                   {10, config_.split}});
+                   {8, config_.density},
+                   {9, kTilePoints / device_.subgroup_size()}});
 }
 
 const Query::Kernels& Query::kernels(bool directional) {
