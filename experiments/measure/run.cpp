@@ -1,6 +1,7 @@
 #include "experiments/measure/run.hpp"
 
 #include "experiments/report/report.hpp"
+#include "experiments/stability/run.hpp"
 
 namespace experiments::measure {
 
@@ -15,8 +16,11 @@ RunOutcome run_experiment(taskpool::gpu::Device& device, const config::Config& c
     RunOutcome outcome{path, {}, {}};
     try {
         SamplesFile samples(folder.samples());
-        Session session{device, config, registries, folder, samples, progress};
-        config.kind == "build" ? run_builds(session) : run_shadows(session);
+        TruthCache cache(options.cache, [&](const std::string& line) { progress.note(line); });
+        Session session{device, config, registries, folder, samples, progress, cache};
+        config.stability         ? stability::run_stability(session)
+        : config.kind == "build" ? run_builds(session)
+                                 : run_shadows(session);
         outcome.failures = session.failures;
         outcome.results = summarise(read_samples(folder.samples()));
         write_summary(folder);

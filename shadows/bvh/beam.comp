@@ -43,6 +43,7 @@ void main() {
         exact_tests += beams.exact_tests;
         groups += beams.groups;
     }
+    count_decisions();
     if (kStatistics) exact_tests = subgroupAdd(exact_tests);
     if (lane() == 0) {
         atomicAdd(push.status.at.finished_tiles, finished);

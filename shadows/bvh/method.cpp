@@ -26,6 +26,12 @@ std::vector<Parameter> make_parameters() {
          {},
          0,
          1e6},
+        {"leaf",
+         std::string("exact"),
+         "leaf test: exact, or a shortcut to measure its errors",
+         {"exact", "watertight", "moeller_trumbore", "double"}},
+        {"contraction", false, "contract the products of leaf = watertight, as a compiler may"},
+        {"bias", 0.0, "move points towards the light by this fraction of the way", {}, 0, 0.1},
     };
     all.insert(all.end(), std::begin(query), std::end(query));
     return all;
@@ -46,6 +52,13 @@ QueryConfig query_config(const Settings& settings) {
     config.stack = static_cast<std::uint32_t>(settings.integer("stack"));
     config.list = static_cast<std::uint32_t>(settings.integer("list"));
     config.density = static_cast<std::uint32_t>(settings.integer("density"));
+    const std::string& leaf = settings.text("leaf");
+    config.leaf = leaf == "watertight"         ? Leaf::watertight
+                  : leaf == "moeller_trumbore" ? Leaf::moeller_trumbore
+                  : leaf == "double"           ? Leaf::double_precision
+                                               : Leaf::exact;
+    config.contraction = settings.boolean("contraction");
+    config.bias = static_cast<float>(settings.real("bias"));
     return config;
 }
 
@@ -118,6 +131,8 @@ Samples BvhMethod::query(const Points& points, Visibility& visible) {
         samples.push_back({"visited_nodes_max", double(most)});
         samples.push_back({"tested_triangles_mean", triangles / count});
         samples.push_back({"exact_tests_mean", status.exact_tests / count});
+        samples.push_back({"fp64_decisions", double(status.fp64_decisions)});
+        samples.push_back({"exact_decisions", double(status.exact_decisions)});
         samples.push_back({"groups", double(status.groups)});
         samples.push_back({"packet_tiles", double(status.packet_tiles)});
     }

@@ -19,6 +19,7 @@ void main() {
         step_limit += answer.step_limit;
         ++finished;
     }
+    count_decisions();
     if (lane() == 0) {
         atomicAdd(push.status.at.finished_tiles, finished);
         atomicAdd(push.status.at.stack_full, stack_full);

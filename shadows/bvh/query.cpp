@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "structures/parameters.hpp"
+
 std::span<const taskpool::gpu::Shader> shadows_bvh_shaders();
 
 namespace shadows::bvh {
@@ -45,6 +47,13 @@ const char* shader_of(QueryKind kind) {
 
 Query::Query(taskpool::gpu::Device& device, const QueryConfig& config)
     : device_(device), config_(config) {
+    using structures::SettingError;
+    if (config.leaf != Leaf::exact && config.kind == QueryKind::beam)
+        throw SettingError("leaf",
+                           "'leaf' other than exact needs query = \"packet\" or \"lane\": "
+                           "beams decide most points without a leaf test");
+    if (config.contraction && config.leaf != Leaf::watertight)
+        throw SettingError("contraction", "'contraction' = true needs leaf = \"watertight\"");
     // Every lane may append a whole leaf before the list is looked at.
     config_.list = std::max(config_.list, 8 * device.subgroup_size());
     // A traversal that a driver would cut must end before, on its own account.
@@ -84,7 +93,10 @@ Kernel Query::kernel(bool directional, bool deferred) const {
                    {6, device_.info().loop_limit > 0},
                    {7, config_.list},
                    {8, config_.density},
-                   {9, kTilePoints / device_.subgroup_size()}});
+                   {9, kTilePoints / device_.subgroup_size()},
+                   {20, static_cast<std::uint32_t>(config_.leaf)},
+                   {21, config_.contraction},
+                   {22, config_.bias}});
 }
 
 const Query::Kernels& Query::kernels(bool directional) {

@@ -4,13 +4,13 @@
 // that to its boundary. Vectors are differences of floats in double precision, each component off
 // by a factor 1 + d, |d| <= 2^-53; so a normal n = v x w is off by at most 2^-50 |v| |w|, its
 // direction by 2^-50 k with k = |v| |w| / |n|, and everything measured along or across it, over a
-// reach r, by less than 2^-48 k r. If rounding takes an inside projection for an outside one, it
+// reach r, by less than 2^-47 k r. If rounding takes an inside projection for an outside one, it
 // lies within that distance of the boundary, and the distance to the boundary is right to within
-// the same. Hence both cases are low enough after subtracting 2^-47 k r ("first bound").
+// the same. Hence both cases are low enough after subtracting 2^-46 k r ("first bound").
 //
 // Where k is huge the set is thin, seen in its plane: all its points are within some width of the
 // boundary, and distance to the boundary minus width is the better bound ("second bound").
-// Distances to segments and rays need no normal; they err by less than 2^-48 r.
+// Distances to segments and rays need no normal; they err by less than 2^-47 r.
 #include "shadows/truth/band.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 using glm::dvec3;
 using structures::geometry::Light;
 
-constexpr double kPlaneError = 0x1p-47, kLineError = 0x1p-48;
+constexpr double kPlaneError = 0x1p-46, kLineError = 0x1p-47;
 
 dvec3 difference(glm::vec3 a, glm::vec3 b) { return dvec3(a) - dvec3(b); }
 

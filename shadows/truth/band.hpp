@@ -14,7 +14,7 @@
 
 namespace shadows::truth {
 
-/// From p to the closed triangle a, b, c.
+/// From p to the closed triangle a, b, c, whose corners are not all one.
 double triangle_distance(glm::vec3 p, glm::vec3 a, glm::vec3 b, glm::vec3 c);
 
 /// From p to the part of the plane through the light and the edge a, b that lies on or behind the

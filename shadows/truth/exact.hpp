@@ -52,8 +52,8 @@ inline int filtered_sign(const glm::dvec3& a, const glm::dvec3& b, const glm::dv
     return size == 0 ? 0 : kUnsure;
 }
 
-/// Sign of det(a - o, b - o, c - o): positive if o sees a, b, c turn counter-clockwise from the
-/// side that (b - a) x (c - a) points away from.
+/// Sign of det(a - o, b - o, c - o) = N . (a - o), where N = (b - a) x (c - a): positive if o lies
+/// on the side of the plane that N points away from.
 inline int orientation(glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 o, Signs& signs) {
     const glm::dvec3 origin(o);
     const int sign =

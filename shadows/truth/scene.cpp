@@ -1,3 +1,4 @@
+// The verdict on one point: exact answer and band from one walk along its segment to the light.
 #include "shadows/truth/scene.hpp"
 
 #include <fmt/format.h>

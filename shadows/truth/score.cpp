@@ -1,3 +1,4 @@
+// Counts and clusters of errors; what counts as which error is decided in one place, error_of().
 #include "shadows/truth/score.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Welding and counting: vertices are sorted by position, then the uses of edges by their vertices.
 #include "shadows/truth/silhouette.hpp"
 
 #include <algorithm>

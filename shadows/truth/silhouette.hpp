@@ -1,13 +1,16 @@
 // Which edges of a mesh bound shadow, seen from the light.
 //
+//     Silhouette silhouette(mesh, light, casters);
+//     bool outline = silhouette.multiplicity(silhouette.edge(t, k)) != 0;
+//
 // Vertices are welded by equal position. A triangle whose exact side is m (+1 or -1: the side of
 // its plane on which the light lies; 0: the light is in the plane, and it casts nothing)
-// contributes m along each of its three edges as it runs through them. The sum over all triangles
+// contributes m along each of its three edges, as it runs through them. The sum over all triangles
 // of an edge is its multiplicity: by how much the number of triangles between a point and the light
-// changes when the point crosses the part of the light's plane behind the edge. 0 between two
-// triangles that continue each other. (Vertices in general position aside, this is the boundary of
-// the chain of triangles turned towards the light, as in Pechnik et al., "Shadow volumes:
-// tessellated silhouettes".)
+// changes when the point crosses the part of the edge's plane of light that lies behind the edge.
+// It is 0 between two triangles that continue each other, whichever way they are wound. Meshes need
+// not be closed, manifold or consistently wound: see "Fast and Robust Tessellation-Based Silhouette
+// Shadows", WSCG 2014, which takes multiplicities the same way, but rounded.
 #pragma once
 
 #include <array>

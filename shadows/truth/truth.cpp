@@ -66,9 +66,14 @@ Verdicts Truth::judge(const PointArrays& points, const JudgeOptions& options) co
                 while (judge_tile(effort)) continue;
                 efforts[i] = effort;
             });
-        while (judge_tile(efforts[0])) {
-            const double done = double(std::min(next.load(), count)) / double(count);
-            if (options.progress && !options.progress(done)) stopped = true;
+        try {
+            while (judge_tile(efforts[0])) {
+                const double done = double(std::min(next.load(), count)) / double(count);
+                if (options.progress && !options.progress(done)) stopped = true;
+            }
+        } catch (...) {
+            stopped = true;
+            throw;
         }
     }
     if (stopped) throw std::runtime_error("Truth: stopped before all points were judged");

@@ -18,6 +18,8 @@ const Parameter kMethodParameters[] = {
     {"fail", std::string("never"), "where to throw", {"never", "prepare", "build", "query", "nan"}},
     {"kill_at", std::int64_t{0}, "kill the process at this query", {}, 0, 1e6},
     {"heat", false, "pretend to have statistics"},
+    {"resolution", std::int64_t{8}, "a number that shares its name with a list", {}, 1, 64},
+    {"exact", false, "claim to be exact"},
 };
 
 /// Shadows in stripes of 64 points; 'times' that depend on the number of queries only.
@@ -46,6 +48,7 @@ class Stripes : public shadows::Method {
         return {{"query_ms", settings_.real("scale") * (10 + double(queries_ % 3)), "ms"}};
     }
     std::vector<float> heat() override { return heat_; }
+    bool claims_exact() const override { return settings_.boolean("exact"); }
 
   private:
     void fail_at(const char* place) const {

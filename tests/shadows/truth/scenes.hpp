@@ -133,4 +133,19 @@ inline Place random_place(Random& random, const TriangleMesh& mesh) {
     return {a + u * (mesh.corner(t, 1) - a) + v * (mesh.corner(t, 2) - a), t};
 }
 
+/// A point a few epsilons from the shadow quad of some edge, on no triangle or on one of the
+/// edge's.
+inline Place place_near_shadow(Random& random, const TriangleMesh& mesh, const Light& light) {
+    if (mesh.triangles.empty()) return {in_cube(random, 1), shadows::kNoReceiver};
+    const auto t = static_cast<std::uint32_t>(random() % mesh.triangle_count());
+    const int k = static_cast<int>(random() % 3);
+    const glm::vec3 a = mesh.corner(t, k), b = mesh.corner(t, (k + 1) % 3);
+    const glm::vec3 x = a + (random() % 4 ? uniform(random, 0, 1) : 0.0f) * (b - a);
+    const bool directional = light.type == Light::Type::directional;
+    const glm::vec3 p = x + uniform(random, 0, 2) * (directional ? light.vector : x - light.vector);
+    const float size = glm::length(p) + glm::length(light.vector) + 1;
+    const glm::vec3 offset = in_cube(random, 1e-5f * std::pow(2.0f, uniform(random, -2, 5)) * size);
+    return {p + (random() % 4 ? offset : glm::vec3(0)), random() % 3 ? shadows::kNoReceiver : t};
+}
+
 }  // namespace tests
