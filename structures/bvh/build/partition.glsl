@@ -5,7 +5,8 @@
 /// Side test of a task's split, evaluated the same way wherever it is needed.
 bool goes_left(Task task, uint place, vec3 center) {
     if (task.rule == kRuleHalve) return place < task.first + task.count / 2;
-    return (task.axis == 0 ? center.x : task.axis == 1 ? center.y : center.z) <= task.position;
+    if (task.rule == kRuleBins) return component(bins_of(task, center), task.axis) <= task.cut;
+    return component(center, task.axis) <= task.middle;
 }
 
 /// Splits [begin, end) of the task's range to places from `left` up and from `right` down. Returns how
@@ -70,24 +71,31 @@ void take_children(inout Task task, KeyBox boxes[4]) {
     task.right_centers = boxes[3];
 }
 
-/// Ranges of at most kFewPrimitives are looked at once: further looks hardly better their splits.
-uint small_looks(Task task) {
-    return !task.looks ? 0 : task.count > kFewPrimitives ? kSmallLooks : 1;
+/// Looks that the bins of a task get: finer ones pay where much is split.
+uint looks(Task task) {
+    return !task.looks ? 0
+           : task.count <= kChunkPrimitives ? 1
+           : task.count <= 4 * kChunkPrimitives ? 2
+                                            : 3;
 }
 
 /// A chunk of a large task's looks or of its partition, or a whole small task's looks and partition:
 /// together, so that there is one copy of each in the kernel.
 void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
     const bool small = phase == kPhaseSmall;
-    const uint looks = phase == kPhasePlanes ? step + 1 : small ? small_looks(task) : 0;
-    for (uint look = phase == kPhasePlanes ? step : 0; look < looks; ++look) {
-        Plane planes[kRows];
-        make_planes(task, look, planes);
-        pass_primitives(task, begin, end, planes);
-        if (small) choose_plane(task, planes);
-        else flush_planes(task.first, planes);
+    const uint all = looks(task), end_look = phase == kPhaseBins ? step + 1 : small ? all : 0;
+    for (uint look = phase == kPhaseBins ? step : 0; look < end_look; ++look) {
+        Bin bins[kRows];
+        clear_bins(bins);
+        pass_primitives(task, begin, end, bins);
+        const bool last = look + 1 == all;
+        if (small) choose_split(task, bins, last);
+        else {
+            flush_bins(task.first, bins);
+            if (last) tell_counts(begin, end, bins);
+        }
     }
-    if (phase == kPhasePlanes) return;
+    if (phase == kPhaseBins) return;
 
     uint left = task.first, right = task.first + task.count;
     if (!small) {

@@ -6,7 +6,7 @@ uint chunks_of(uint count) { return (count + kChunkPrimitives - 1) / kChunkPrimi
 Next first_step(Task task) {
     if (task.count <= kLeafRange) return next_step(kPhaseLeaves, 0, 1);
     if (task.count <= kChunkPrimitives) return next_step(kPhaseSmall, 0, 1);
-    return next_step(task.looks ? kPhasePlanes : kPhaseCount, 0, chunks_of(task.count));
+    return next_step(task.looks ? kPhaseBins : kPhaseCount, 0, chunks_of(task.count));
 }
 
 /// Rule of a fresh task. Halving bounds the depth: once only halving can still finish above kMaxDepth.
@@ -14,13 +14,13 @@ void set_rule(inout Task task) {
     precise vec3 extent = task.center_upper - task.center_lower;
     const uint halvings = uint(findMSB(max(task.count, 1u))) + 1;
     const bool halve = task.depth + halvings >= kMaxDepth || extent == vec3(0);
-    task.rule = kSpatialMedian && !halve ? kRulePlane : kRuleHalve;
+    task.rule = kSpatialMedian && !halve ? kRuleMiddle : kRuleHalve;
     task.looks = !kSpatialMedian && !halve;
-    task.axis_cost = vec3(kInfinity);
-    task.axis_position = vec3(0);
+    task.bin_offset = vec3(0);
+    task.bin_scale = vec3(bin_scale(extent.x), bin_scale(extent.y), bin_scale(extent.z));
     task.axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
     precise float middle = 0.5 * task.center_lower[task.axis] + 0.5 * task.center_upper[task.axis];
-    task.position = middle;
+    task.middle = middle;
 }
 
 /// The root's bounds have been gathered in scratch 0; goes on with its first step.
@@ -43,7 +43,7 @@ Next start_root(inout Task task) {
 
 Next after_setup(inout Task task) {
     const uint all = task.count;
-    const uint valid = scan_chunks(0, all);
+    const uint valid = scan_chunks(0, all, 0, 1);
     task.left_count = valid;
     if (valid < all) return next_step(kPhaseCompact, 0, valid == 0 ? 0 : chunks_of(all));
     return start_root(task);
@@ -54,19 +54,21 @@ Next after_compact(inout Task task) {
     return start_root(task);
 }
 
-Next after_planes(inout Task task, uint look) {
-    Plane planes[kRows];
-    make_planes(task, look, planes);
-    fetch_planes(task.first, planes);
-    choose_plane(task, planes);
+Next after_bins(inout Task task, uint look) {
+    Bin bins[kRows];
+    fetch_bins(task.first, bins);
+    const bool last = look + 1 == looks(task);
+    choose_split(task, bins, last);
     clear_scratch(task.first);
     const uint chunks = chunks_of(task.count);
-    if (look + 1 < kLargeLooks) return next_step(kPhasePlanes, look + 1, chunks);
-    return next_step(kPhaseCount, 0, chunks);
+    if (!last) return next_step(kPhaseBins, look + 1, chunks);
+    if (task.rule != kRuleBins) return next_step(kPhaseCount, 0, chunks);
+    task.left_count = scan_chunks(task.first, task.count, task.axis * kBins, task.cut + 1);
+    return next_step(kPhasePartition, 0, chunks);
 }
 
 Next after_count(inout Task task, uint step) {
-    task.left_count = scan_chunks(task.first, task.count);
+    task.left_count = scan_chunks(task.first, task.count, 0, 1);
     if (task.left_count == 0 || task.left_count == task.count) {
         // The middle of the centres separated nothing.
         task.rule = kRuleHalve;
