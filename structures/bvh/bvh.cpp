@@ -33,7 +33,7 @@ struct Task {
 static_assert(sizeof(Task) == 53 * 4);
 
 struct Client {
-    std::uint64_t primitives, order[2], nodes, scratch, input;
+    std::uint64_t primitives[2], order, nodes, scratch, input;
 };
 static_assert(sizeof(Client) == 48);
 
@@ -67,6 +67,7 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
         {20, float(config.costs.traversal)},
         {21, float(config.costs.intersection)},
         {22, leaf_range_of(lanes, config)},
+        {25, lanes},
         {23, config.split == Split::spatial_median},
         {24, config.max_depth},
     };
@@ -98,7 +99,7 @@ std::size_t BvhBuild::output_bytes(std::size_t triangles) {
 }
 
 std::size_t BvhBuild::required_bytes(std::size_t triangles) const {
-    return output_bytes(triangles) + triangles * (sizeof(Primitive) + sizeof(uint)) +
+    return output_bytes(triangles) + triangles * 2 * sizeof(Primitive) +
            scratch_words(triangles) * 4 + sizeof(BuildInput) +
            pool::Pool::required_bytes(*device_, client_spec(*device_, config_), config_.pool);
 }
@@ -112,16 +113,15 @@ void BvhBuild::prepare(const geometry::TriangleMesh& mesh) {
     triangles_ = gpu::make_buffer<glm::uvec3>(*device_, mesh.triangles, "mesh triangles");
     const BuildInput input{positions_.address(), triangles_.address(), triangle_count_, 0};
     input_ = gpu::make_buffer<BuildInput>(*device_, std::span(&input, 1), "BVH build input");
-    primitives_ = gpu::Buffer(*device_, count * sizeof(Primitive), "BVH build primitives");
+    for (gpu::Buffer& primitives : primitives_)
+        primitives = gpu::Buffer(*device_, count * sizeof(Primitive), "BVH build primitives");
     nodes_ = gpu::Buffer(*device_, node_count(count) * sizeof(BvhNode), "BVH nodes");
     order_ = gpu::Buffer(*device_, count * sizeof(uint), "BVH order");
-    other_order_ = gpu::Buffer(*device_, count * sizeof(uint), "BVH build order");
     scratch_ = gpu::Buffer(*device_, scratch_words(count) * 4, "BVH build scratch");
 }
 
 void BvhBuild::release_scratch() {
-    primitives_ = {};
-    other_order_ = {};
+    for (gpu::Buffer& primitives : primitives_) primitives = {};
     scratch_ = {};
 }
 
@@ -139,8 +139,8 @@ void BvhBuild::record(gpu::Recorder& recorder) {
         recorder.barrier();
         first_launch_ = false;
     }
-    pool_.record(recorder, Client{primitives_.address(),
-                                  {order_.address(), other_order_.address()},
+    pool_.record(recorder, Client{{primitives_[0].address(), primitives_[1].address()},
+                                  order_.address(),
                                   nodes_.address(),
                                   scratch_.address(),
                                   input_.address()});

@@ -80,8 +80,7 @@ class BvhBuild final : public taskpool::pool::Job {
     taskpool::gpu::Device* device_;
     Config config_;
     taskpool::pool::Pool pool_;
-    taskpool::gpu::Buffer positions_, triangles_, input_, primitives_, nodes_, order_, other_order_,
-        scratch_;
+    taskpool::gpu::Buffer positions_, triangles_, input_, primitives_[2], nodes_, order_, scratch_;
     std::uint32_t triangle_count_ = 0;
     bool first_launch_ = true;
 };

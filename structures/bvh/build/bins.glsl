@@ -5,6 +5,7 @@
 //
 // Measured on lavapipe: bins in shared memory, two accesses per word and primitive, were far slower.
 
+layout(constant_id = 25) const uint kLanes = 8;      // in a subgroup
 layout(constant_id = 16) const uint kAxisLanes = 8;  // lanes that hold one axis' bins
 const uint kSlots = kBins / kAxisLanes;              // bins of an axis per lane
 layout(constant_id = 17) const uint kSets = 3;       // axes per lane: 3 kAxisLanes / subgroup size, up
@@ -20,7 +21,7 @@ struct Bin {
 
 /// Lane's axis in set `set` of its bins; 3 or more: none.
 uint axis_of(uint set) {
-    return set * (gl_SubgroupSize / kAxisLanes) + gl_SubgroupInvocationID / kAxisLanes;
+    return set * (kLanes / kAxisLanes) + gl_SubgroupInvocationID / kAxisLanes;
 }
 uint axis_lane() { return gl_SubgroupInvocationID % kAxisLanes; }
 /// Lane's bin in a row, among those of all axes.
@@ -36,10 +37,12 @@ float bin_scale(float extent) {
     return float(reciprocal * kBins) * uintBitsToFloat((245 - exponent) << 23);
 }
 
-/// The bins of a centre. Never evaluated otherwise: looks and partitions have to agree.
+/// The bins of a centre. Never evaluated otherwise: looks and partitions have to agree. The sum's last bits
+/// are the bin, as conversions to integers cost lavapipe ten times as much.
 uvec3 bins_of(Task task, vec3 center) {
     precise vec3 place = (center - task.center_lower) * task.bin_scale + task.bin_offset;
-    return min(uvec3(max(place, vec3(0))), uvec3(kBins - 1));
+    precise vec3 rounded = clamp(place, vec3(0.5), vec3(float(kBins) - 0.5)) + 8388607.5;  // 2^23 - 1/2
+    return floatBitsToUint(rounded) & (kBins - 1);
 }
 
 void clear_bins(out Bin bins[kRows]) {
@@ -61,15 +64,17 @@ void pass_primitives(Task task, uint begin, uint end, inout Bin bins[kRows]) {
         mask[set] = 0xffu << shift;
         pattern[set] = (axis_of(set) < 3 ? axis_lane() * kSlots : 0xffu) << shift;
     }
+    Primitives primitives = primitives_of(task.side);
+    Primitive next = primitives.at[min(begin + gl_SubgroupInvocationID, end - 1)];
     for (uint i = begin; i < end; i += gl_SubgroupSize) {
         const uint mine = i + gl_SubgroupInvocationID;
-        const uint id = order_of(task.side).at[min(mine, end - 1)];
-        const Primitive primitive = pool.client.primitives.at[id];
+        const Primitive primitive = next;
+        next = primitives.at[min(mine + gl_SubgroupSize, end - 1)];
         precise vec3 center = primitive.lower + primitive.upper;
         const KeyBox box = keys_of(primitive.lower, primitive.upper);
         const uvec3 place = bins_of(task, center);
         const uint word = mine < end ? place.x | place.y << 8 | place.z << 16 : 0x7fffffffu;
-        for (uint first = 0; first < gl_SubgroupSize; first += kAxisLanes) {
+        [[unroll]] for (uint first = 0; first < kLanes; first += kAxisLanes) {
             uint passing[kAxisLanes];
             KeyBox passing_box[kAxisLanes];
             [[unroll]] for (uint k = 0; k < kAxisLanes; ++k) {
@@ -89,7 +94,7 @@ void pass_primitives(Task task, uint begin, uint end, inout Bin bins[kRows]) {
                 bins[row] = taking;
             }
         }
-        pool_spend(gl_SubgroupSize / kAxisLanes + 2);
+        pool_spend(kLanes / kAxisLanes + 2);
     }
 }
 
@@ -144,7 +149,7 @@ void best_splits(Bin bins[kRows], out vec3 cost, out uvec3 cut) {
             best = take ? other : best;
             best_bin = take ? bin : best_bin;
         }
-        const uint groups = gl_SubgroupSize / kAxisLanes;
+        const uint groups = kLanes / kAxisLanes;
         [[unroll]] for (uint axis = 0; axis < 3; ++axis) {
             const uint lane = axis % groups * kAxisLanes;
             const float axis_best = subgroupShuffle(best, lane);

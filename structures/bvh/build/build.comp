@@ -24,7 +24,7 @@ const uint kRuleBins = 2;    // bins up to `cut` of `axis` go left
 struct Task {
     uint first, count;
     uint node, depth;
-    uint side;  // which order holds the range
+    uint side;  // which primitives hold the range
     KeyBox box;
     vec3 center_lower, center_upper;  // bounds of lower + upper of the primitives' boxes
     uint rule, axis;
@@ -42,8 +42,8 @@ pool_buffer(4) Scratch { uint words[]; };
 pool_buffer(8) Input { BuildInput data; };
 
 struct Client {
-    Primitives primitives;  // by triangle
-    PoolUints order[2];     // of the primitives, from one half to the other; the first is the output
+    Primitives primitives[2];  // sorted from one into the other
+    PoolUints order;           // output: their triangles in leaf order
     Nodes nodes;
     Scratch scratch;  // of large tasks, then two words per chunk for chunk counts
     Input mesh;
@@ -54,8 +54,9 @@ struct Client {
 float component(vec3 v, uint axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 uint component(uvec3 v, uint axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-PoolUints order_of(uint side) {
-    return PoolUints(side == 0 ? uint64_t(pool.client.order[0]) : uint64_t(pool.client.order[1]));
+Primitives primitives_of(uint side) {
+    return Primitives(side == 0 ? uint64_t(pool.client.primitives[0])
+                                : uint64_t(pool.client.primitives[1]));
 }
 
 #include "structures/bvh/build/bins.glsl"

@@ -29,9 +29,9 @@ BVH_CONSTANT uint kKeys = 6;                // of a box: see keys_of() in keys.g
 // A triangle's box.
 struct Primitive {
     vec3 lower;
-    uint valid;  // 0 if the triangle is degenerate
+    uint id;  // of the triangle
     vec3 upper;
-    uint padding;
+    uint valid;  // 0 if the triangle is degenerate
 };
 
 // The mesh.

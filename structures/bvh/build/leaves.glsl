@@ -60,8 +60,8 @@ Candidate best_of(uint members, Candidate mine, uint lanes) {
 void build_leaves(Task task) {
     const uint lane = gl_SubgroupInvocationID;
     const bool used = lane < task.count;
-    const uint id = order_of(task.side).at[task.first + min(lane, task.count - 1)];
-    const Primitive primitive = pool.client.primitives.at[id];
+    const Primitive primitive =
+        primitives_of(task.side).at[task.first + min(lane, task.count - 1)];
     const KeyBox keys = keys_of(primitive.lower, primitive.upper);
     precise vec3 center = primitive.lower + primitive.upper;
     const uint lanes_before = (1u << (lane & 31)) - 1;
@@ -99,5 +99,5 @@ void build_leaves(Task task) {
         }
         pool_spend(2 * task.count + 4);
     }
-    if (used) pool.client.order[0].at[begin + uint(bitCount(members & lanes_before))] = id;
+    if (used) pool.client.order.at[begin + uint(bitCount(members & lanes_before))] = primitive.id;
 }

@@ -9,26 +9,37 @@ bool goes_left(Task task, uint place, vec3 center) {
     return component(center, task.axis) <= task.middle;
 }
 
+/// Sum of the lanes' values up to this one; by shuffles, as lavapipe makes scans and ballots of loops.
+uint sum_to_here(uint mine) {
+    [[unroll]] for (uint apart = 1; apart < kLanes; apart *= 2) {
+        const uint before = subgroupShuffle(mine, gl_SubgroupInvocationID - apart);
+        mine += gl_SubgroupInvocationID < apart ? 0 : before;
+    }
+    return mine;
+}
+
 /// Splits [begin, end) of the task's range to places from `left` up and from `right` down. Returns how
 /// many went left; `boxes` become those of the left and the right primitives and of their centres, in
 /// the order of take_children().
 uint move_range(Task task, uint begin, uint end, uint left, uint right, out KeyBox boxes[4]) {
     boxes = no_boxes();
     const uint left_begin = left;
+    Primitives primitives = primitives_of(task.side);
+    Primitive next = primitives.at[min(begin + gl_SubgroupInvocationID, end - 1)];
     for (uint i = begin; i < end; i += gl_SubgroupSize) {
         const uint mine = i + gl_SubgroupInvocationID;
         const bool used = mine < end;
-        const uint id = order_of(task.side).at[min(mine, end - 1)];
-        const Primitive primitive = pool.client.primitives.at[id];
+        const Primitive primitive = next;
+        next = primitives.at[min(mine + gl_SubgroupSize, end - 1)];
         precise vec3 center = primitive.lower + primitive.upper;
         const bool is_left = used && goes_left(task, mine, center);
         const bool is_right = used && !is_left;
-        const uvec4 lefts = subgroupBallot(is_left);
-        const uint lefts_before = subgroupBallotExclusiveBitCount(lefts);
+        const uint lefts_to_here = sum_to_here(is_left ? 1 : 0);
+        const uint lefts_before = lefts_to_here - (is_left ? 1 : 0);
         const uint target = is_left ? left + lefts_before
                                     : right - 1 - (gl_SubgroupInvocationID - lefts_before);
-        if (used) order_of(1 - task.side).at[target] = id;
-        const uint left_count = subgroupBallotBitCount(lefts);
+        if (used) primitives_of(1 - task.side).at[target] = primitive;
+        const uint left_count = subgroupShuffle(lefts_to_here, kLanes - 1);
         left += left_count;
         right -= min(end - i, gl_SubgroupSize) - left_count;
         const KeyBox keys = keys_of(primitive.lower, primitive.upper), key = keys_of(center, center);
@@ -47,8 +58,7 @@ uint count_left(Task task, uint begin, uint end) {
     uint count = 0;
     for (uint i = begin; i < end; i += gl_SubgroupSize) {
         const uint mine = i + gl_SubgroupInvocationID;
-        const uint id = order_of(task.side).at[min(mine, end - 1)];
-        const Primitive primitive = pool.client.primitives.at[id];
+        const Primitive primitive = primitives_of(task.side).at[min(mine, end - 1)];
         precise vec3 center = primitive.lower + primitive.upper;
         count += subgroupBallotBitCount(
             subgroupBallot(mine < end && goes_left(task, mine, center)));
@@ -71,6 +81,16 @@ void take_children(inout Task task, KeyBox boxes[4]) {
     task.right_centers = boxes[3];
 }
 
+/// Brings the primitives of [begin, end) nearer: many misses at a time, where passing them one by one would
+/// wait for each. Spends what it reads, a one, lest it be left out.
+void touch(Task task, uint begin, uint end) {
+    Primitives primitives = primitives_of(task.side);
+    uint seen = 0;
+    for (uint i = begin; i < end; i += 2 * kLanes)
+        seen |= primitives.at[min(i + 2 * gl_SubgroupInvocationID, end - 1)].valid;
+    pool_spend(seen + kChunkPrimitives / (2 * kLanes));
+}
+
 /// Looks that the bins of a task get: finer ones pay where much is split.
 uint looks(Task task) {
     return !task.looks ? 0
@@ -83,6 +103,7 @@ uint looks(Task task) {
 /// together, so that there is one copy of each in the kernel.
 void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
     const bool small = phase == kPhaseSmall;
+    if (!small) touch(task, begin, end);
     const uint all = looks(task), end_look = phase == kPhaseBins ? step + 1 : small ? all : 0;
     for (uint look = phase == kPhaseBins ? step : 0; look < end_look; ++look) {
         Bin bins[kRows];

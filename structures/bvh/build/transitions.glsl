@@ -51,6 +51,7 @@ Next after_setup(inout Task task) {
 
 Next after_compact(inout Task task) {
     task.count = task.left_count;
+    task.side = 1;
     return start_root(task);
 }
 
