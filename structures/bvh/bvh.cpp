@@ -57,8 +57,8 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
     // A small task's looks and its move, or a subgroup's leaves, and the transition.
     const std::uint32_t groups = kChunkPrimitives / lanes,
                         leaf_range = leaf_range_of(lanes, config);
-    spec.chunk_iterations = kChunkPrimitives / axis_lanes + 4 * groups +
-                            2 * (leaf_range + 2) * (leaf_range + 2) + 1024;
+    spec.chunk_iterations =
+        kChunkPrimitives / axis_lanes + 4 * groups + 2 * (leaf_range + 2) * (leaf_range + 2) + 1024;
     spec.constants = {
         {16, axis_lanes},
         {17, (3 * axis_lanes + lanes - 1) / lanes},
@@ -162,7 +162,7 @@ Tree BvhBuild::read_back() const {
 }
 
 std::span<const std::string> phase_names() {
-    static const std::string names[] = {"setup",     "compact", "bins", "count",
+    static const std::string names[] = {"setup",     "compact", "bins",  "count",
                                         "partition", "small",   "leaves"};
     return names;
 }

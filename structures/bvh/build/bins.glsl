@@ -37,11 +37,12 @@ float bin_scale(float extent) {
     return float(reciprocal * kBins) * uintBitsToFloat((245 - exponent) << 23);
 }
 
-/// The bins of a centre. Never evaluated otherwise: looks and partitions have to agree. The sum's last bits
-/// are the bin, as conversions to integers cost lavapipe ten times as much.
+/// The bins of a centre. Never evaluated otherwise: looks and partitions have to agree. The sum's last
+/// bits are the bin, as conversions to integers cost lavapipe ten times as much.
 uvec3 bins_of(Task task, vec3 center) {
     precise vec3 place = (center - task.center_lower) * task.bin_scale + task.bin_offset;
-    precise vec3 rounded = clamp(place, vec3(0.5), vec3(float(kBins) - 0.5)) + 8388607.5;  // 2^23 - 1/2
+    const float magic = 8388607.5;  // 2^23 - 1/2
+    precise vec3 rounded = clamp(place, vec3(0.5), vec3(float(kBins) - 0.5)) + magic;
     return floatBitsToUint(rounded) & (kBins - 1);
 }
 
@@ -118,8 +119,8 @@ Bin scan_lanes(Bin mine, bool down) {
     return sum;
 }
 
-/// Of the best split between bins on each axis: its cost (area * count over both sides), infinite if there is
-/// none, and the last bin on its left.
+/// Of the best split between bins on each axis: its cost (area * count over both sides), infinite if
+/// there is none, and the last bin on its left.
 void best_splits(Bin bins[kRows], out vec3 cost, out uvec3 cut) {
     cost = vec3(kInfinity);
     cut = uvec3(kNone);

@@ -23,7 +23,8 @@ BVH_CONSTANT uint kPhaseSmall = 5;      // chooses a plane and partitions, in on
 BVH_CONSTANT uint kPhaseLeaves = 6;     // full SAH over a range that fits a subgroup
 
 BVH_CONSTANT uint kChunkPrimitives = 1024;  // in a chunk, and in a small task at most
-BVH_CONSTANT uint kBins = 16;                // of an axis, a power of two
+BVH_CONSTANT uint kFewPrimitives = 32;      // so few get another look
+BVH_CONSTANT uint kBins = 16;               // of an axis, a power of two
 BVH_CONSTANT uint kKeys = 6;                // of a box: see keys_of() in keys.glsl
 
 // A triangle's box.

@@ -1,4 +1,4 @@
-// Choosing planes and partitioning ranges, in chunks of large tasks and whole for small ones. Which side
+// Choosing splits and partitioning ranges, in chunks of large tasks and whole for small ones. Which side
 // a primitive goes to depends on nothing but its box (or, to halve a range, on its place), and it
 // lands at a place that depends on nothing but the order before: builds are deterministic.
 
@@ -81,8 +81,8 @@ void take_children(inout Task task, KeyBox boxes[4]) {
     task.right_centers = boxes[3];
 }
 
-/// Brings the primitives of [begin, end) nearer: many misses at a time, where passing them one by one would
-/// wait for each. Spends what it reads, a one, lest it be left out.
+/// Brings the primitives of [begin, end) nearer: many misses at a time, where passing them one by one
+/// would wait for each. Spends what it reads, a one, lest it be left out.
 void touch(Task task, uint begin, uint end) {
     Primitives primitives = primitives_of(task.side);
     uint seen = 0;
@@ -91,12 +91,11 @@ void touch(Task task, uint begin, uint end) {
     pool_spend(seen + kChunkPrimitives / (2 * kLanes));
 }
 
-/// Looks that the bins of a task get: finer ones pay where much is split.
+/// Looks that a task gets: finer ones pay where much is split, and where the tree is nearly done.
 uint looks(Task task) {
-    return !task.looks ? 0
-           : task.count <= kChunkPrimitives ? 1
-           : task.count <= 4 * kChunkPrimitives ? 2
-                                            : 3;
+    if (!task.looks) return 0;
+    if (task.count > 4 * kChunkPrimitives) return 3;
+    return task.count > kChunkPrimitives || task.count <= kFewPrimitives ? 2 : 1;
 }
 
 /// A chunk of a large task's looks or of its partition, or a whole small task's looks and partition:
