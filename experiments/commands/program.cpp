@@ -58,6 +58,10 @@ int parse_and_run(int argc, const char* const* argv, const measure::Registries& 
         ->check(kNotNegative);
     run_command->add_option("--shaders", request.shaders,
                             "folder of SPIR-V files to use instead of the built-in ones");
+    run_command
+        ->add_option("--cache", request.cache,
+                     "folder that keeps the truth between runs; default ~/.cache/grove")
+        ->envname("GROVE_CACHE");
     run_command->add_flag("--resume", request.resume, "continue the run in --out");
     run_command->add_flag("--quiet", request.quiet, "no progress, no table");
 

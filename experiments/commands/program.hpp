@@ -17,6 +17,7 @@ struct RunRequest {
     std::vector<std::string> configs;
     std::vector<std::string> assignments;  ///< of --set
     std::string out;                       ///< empty: below runs/
+    std::string cache;                     ///< folder; empty: the user's own
     std::string shaders;                   ///< folder of SPIR-V to use instead of the embedded
     int device = -1;
     bool resume = false;

@@ -11,8 +11,9 @@
 namespace experiments::commands {
 namespace {
 
-constexpr const char* kColumns[] = {"build_ms", "query_ms",         "total_ms",    "sah_cost",
-                                    "shadowed", "differing_points", "memory_bytes"};
+constexpr const char* kColumns[] = {"build_ms",  "query_ms",       "total_ms",
+                                    "sah_cost",  "shadowed",       "differing_points",
+                                    "false_lit", "false_shadowed", "memory_bytes"};
 
 /// SPIR-V from `folder`/<shader path>.spv, as the build leaves it in its `shaders` folder.
 std::optional<std::vector<std::uint32_t>> read_shader(const std::filesystem::path& folder,
@@ -90,13 +91,15 @@ int run(const RunRequest& request, const measure::Registries& registries) {
         throw std::runtime_error(
             fmt::format("no Vulkan device to run on: {}; see grove doctor", error.what()));
     }
+    std::filesystem::path cache = request.cache;
+    if (cache.empty()) cache = measure::default_cache_folder();
     int code = 0;
     for (const config::Config& config : configs) {
         measure::Progress progress(request.quiet ? measure::Progress::Mode::quiet
                                                  : measure::Progress::Mode::automatic);
         const measure::RunOutcome outcome = measure::run_experiment(
             *device, config, registries,
-            {folder_of(request, config), request.resume, request.command_line}, progress);
+            {folder_of(request, config), request.resume, request.command_line, cache}, progress);
         if (!outcome.failures.empty()) code = 1;
         if (!request.quiet) fmt::print("{}\n", results_table(outcome.results));
         fmt::print("{}\n", outcome.folder.string());

@@ -132,6 +132,8 @@ Config resolve(const Node& root, const std::filesystem::path& file, const Catalo
     config.repeat = int(table.integer("repeat", 1, 100000).value_or(config.repeat));
     config.warmup = int(table.integer("warmup", 0, 100000).value_or(config.warmup));
     config.seed = table.integer("seed", 0, INT64_MAX).value_or(config.seed);
+    config.truth = table.boolean("truth").value_or(config.truth);
+    config.pictures = table.boolean("pictures").value_or(config.pictures);
     const auto reference = table.text("reference");
     table.finish();
 
@@ -161,6 +163,8 @@ nlohmann::json to_json(const Config& config) {
                            {"repeat", config.repeat},
                            {"warmup", config.warmup},
                            {"seed", config.seed},
+                           {"truth", config.truth},
+                           {"pictures", config.pictures},
                            {"scenes", nlohmann::json::array()},
                            {"methods", nlohmann::json::array()}};
     json["reference"] =

@@ -44,6 +44,8 @@ struct Config {
     int repeat = 5;
     int warmup = 1;
     std::int64_t seed = 1;
+    bool truth = true;          ///< kind "shadows": judge every answer by shadows/truth
+    bool pictures = true;       ///< kind "shadows": draw every answer
     std::size_t reference = 0;  ///< index of the method whose answer the others are compared with
     std::vector<Scene> scenes;
     std::vector<Method> methods;

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cmath>
+#include <cstdlib>
 
 namespace experiments::config {
 namespace {
@@ -55,6 +55,14 @@ std::optional<std::string> Table::choice(const std::string& key,
     if (value && std::find(names.begin(), names.end(), *value) == names.end())
         fail(*node_.find(key), unknown(key, *value, names));
     return value;
+}
+
+std::optional<bool> Table::boolean(const std::string& key) {
+    const Node* node = find(key);
+    if (!node) return {};
+    const auto* value = std::get_if<bool>(&node->scalar);
+    if (node->kind != Node::Kind::scalar || !value) wrong_type(*node, key, "true or false");
+    return *value;
 }
 
 std::optional<std::int64_t> Table::integer(const std::string& key, std::int64_t minimum,

@@ -27,6 +27,7 @@ class Table {
     /// One of `choices`.
     std::optional<std::string> choice(const std::string& key,
                                       std::initializer_list<const char*> choices);
+    std::optional<bool> boolean(const std::string& key);
     std::optional<std::int64_t> integer(const std::string& key, std::int64_t minimum,
                                         std::int64_t maximum);
     std::optional<double> real(const std::string& key);

@@ -72,8 +72,7 @@ void save_trace(Session& session, const std::string& place, Contestant& contesta
 }
 
 void run_scene(Session& session, const config::Scene& scene) {
-    session.step(scene.name + ": loading");
-    --session.steps_done;
+    session.show_step(scene.name + ": loading");
     const SceneInput input = load_scene(scene);
     std::vector<Contestant> contestants;
     const std::size_t failures = session.failures.size();

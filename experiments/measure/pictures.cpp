@@ -11,6 +11,7 @@ namespace experiments::measure {
 namespace {
 
 using image::Image;
+using shadows::truth::Error;
 
 /// `value(point)` of every pixel, in rows.
 template <typename Function>
@@ -24,6 +25,36 @@ Image per_pixel(const shadows::Points& points, int channels, const Function& val
     return picture;
 }
 
+/// Diffuse grey surfaces under the light, darkened where shadowed.
+Image shade(const shadows::Points& points, const shadows::Visibility& visible,
+            const structures::geometry::Light& light) {
+    const glm::vec3 background(0.55f, 0.65f, 0.78f), surface(0.72f, 0.69f, 0.64f);
+    const bool is_point = light.type == structures::geometry::Light::Type::point;
+    const auto& host = points.host();
+    return per_pixel(points, 3, [&](std::uint32_t i) {
+        if (host.primitive[i] == shadows::kNoPrimitive) return background;
+        const glm::vec3 position(host.x[i], host.y[i], host.z[i]);
+        const glm::vec3 to_light =
+            glm::normalize(is_point ? light.vector - position : -light.vector);
+        const glm::vec3 normal = host.normal[i];
+        // A little light from everywhere, more from above, keeps shapes readable in the shadow.
+        const float ambient = 0.10f + 0.05f * normal.y;
+        const float direct = visible.lit(i) ? std::max(0.f, glm::dot(normal, to_light)) : 0.f;
+        return surface * (ambient + 0.9f * direct);
+    });
+}
+
+/// A round dot around the pixel, cut off at the borders.
+void draw_dot(Image& picture, int x, int y, int radius, const glm::vec3& color) {
+    for (int dy = -radius; dy <= radius; ++dy)
+        for (int dx = -radius; dx <= radius; ++dx) {
+            const bool inside = x + dx >= 0 && x + dx < picture.width && y + dy >= 0 &&
+                                y + dy < picture.height &&
+                                dx * dx + dy * dy <= radius * (radius + 1);
+            for (int c = 0; inside && c < 3; ++c) picture.at(x + dx, y + dy, c) = color[c];
+        }
+}
+
 }  // namespace
 
 Pictures::Pictures(RunFolder& folder, std::string scene, std::string method, std::string variant)
@@ -35,23 +66,9 @@ Pictures::Pictures(RunFolder& folder, std::string scene, std::string method, std
 
 void Pictures::shaded(const shadows::Points& points, const shadows::Visibility& visible,
                       const structures::geometry::Light& light) {
-    const glm::vec3 background(0.55f, 0.65f, 0.78f), surface(0.72f, 0.69f, 0.64f);
-    const bool is_point = light.type == structures::geometry::Light::Type::point;
-    const auto& host = points.host();
-    const Image picture = per_pixel(points, 3, [&](std::uint32_t i) {
-        if (host.primitive[i] == shadows::kNoPrimitive) return background;
-        const glm::vec3 position(host.x[i], host.y[i], host.z[i]);
-        const glm::vec3 to_light =
-            glm::normalize(is_point ? light.vector - position : -light.vector);
-        const glm::vec3 normal = host.normal[i];
-        // A little light from everywhere, more from above, keeps shapes readable in the shadow.
-        const float ambient = 0.10f + 0.05f * normal.y;
-        const float direct = visible.lit(i) ? std::max(0.f, glm::dot(normal, to_light)) : 0.f;
-        return surface * (ambient + 0.9f * direct);
-    });
     const std::string file = stem_ + "-shaded.png";
     try {
-        image::write_png(folder_.images() / file, picture);
+        image::write_png(folder_.images() / file, shade(points, visible, light));
     } catch (const image::FileError& error) {
         throw OutputError(error.what());
     }
@@ -61,7 +78,7 @@ void Pictures::shaded(const shadows::Points& points, const shadows::Visibility& 
 void Pictures::visibility(const shadows::Points& points, const shadows::Visibility& visible) {
     const Image mask = per_pixel(
         points, 1, [&](std::uint32_t i) { return glm::vec1(visible.lit(i) ? 1.f : 0.f); });
-    save("visibility", mask, "visibility", mask);
+    save("visibility", mask, {{"visibility"}}, mask);
 }
 
 void Pictures::difference(const shadows::Points& points, const shadows::Visibility& visible,
@@ -79,7 +96,33 @@ void Pictures::difference(const shadows::Points& points, const shadows::Visibili
         for (int x = 0; x < sign.width; ++x)
             if (const float value = sign.at(x, y, 0); value != 0)
                 for (int c = 0; c < 3; ++c) preview.at(x, y, c) = image::signed_color(value)[c];
-    save("difference", sign, "difference", preview);
+    save("difference", sign, {{"difference"}}, preview);
+}
+
+void Pictures::errors(const shadows::Points& points, const shadows::Visibility& visible,
+                      const structures::geometry::Light& light, std::span<const Error> mask) {
+    static const std::string kChannels[] = {"false_lit", "false_shadowed", "in_band"};
+    // In the order of drawing: what counts as an error comes last, on top.
+    static const std::pair<Error, glm::vec3> kColors[] = {
+        {Error::in_band, {0.9f, 0.65f, 0.0f}},
+        {Error::false_shadowed, {0.01f, 0.1f, 0.9f}},
+        {Error::false_lit, {0.85f, 0.01f, 0.01f}}};
+    Image exact(int(points.width()), int(points.height()), 3);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+        if (mask[i] == Error::none) continue;
+        exact.values[3 * i + (std::size_t(mask[i]) - std::size_t(Error::false_lit))] = 1;
+        ++count;
+    }
+    if (count == 0) return;
+    // Single pixels are lost on a screen; where there are many they show by themselves.
+    const int radius = count > mask.size() / 200 ? 0 : std::max(2, exact.width / 480);
+    Image preview = shade(points, visible, light);
+    for (const auto& [kind, color] : kColors)
+        for (std::size_t i = 0; i < mask.size(); ++i)
+            if (mask[i] == kind)
+                draw_dot(preview, int(i % points.width()), int(i / points.width()), radius, color);
+    save("errors", exact, kChannels, preview);
 }
 
 void Pictures::heat(const shadows::Points& points, const std::vector<float>& cost) {
@@ -88,15 +131,14 @@ void Pictures::heat(const shadows::Points& points, const std::vector<float>& cos
     std::vector<float> sorted = picture.values;
     const auto rank = sorted.begin() + std::ptrdiff_t(0.99 * double(sorted.size() - 1));
     std::nth_element(sorted.begin(), rank, sorted.end());
-    save("heat", picture, "cost",
+    save("heat", picture, {{"cost"}},
          image::heat_image(picture.values, picture.width, picture.height, 0, std::max(1.f, *rank)));
 }
 
-void Pictures::save(const std::string& kind, const Image& exact, const std::string& channel,
-                    const Image& preview) {
+void Pictures::save(const std::string& kind, const Image& exact,
+                    std::span<const std::string> channels, const Image& preview) {
     const std::string name = stem_ + "-" + kind;
     try {
-        const std::string channels[] = {channel};
         image::write_exr(folder_.images() / (name + ".exr"), exact, channels);
         image::write_png(folder_.images() / (name + ".png"), preview);
     } catch (const image::FileError& error) {

@@ -17,15 +17,25 @@ void Progress::log_to(const std::filesystem::path& file) {
 }
 
 void Progress::step(const std::string& what, int done, int total) {
-    log(fmt::format("[{}/{}] {}", done, total, what));
+    steps_ = fmt::format("[{}/{}]", done, total);
+    log(steps_ + " " + what);
+    show(what);
+}
+
+void Progress::update(const std::string& what) {
+    const std::chrono::milliseconds pause(terminal_ ? 200 : 10000);
+    if (Clock::now() - shown_ >= pause) show(what);
+}
+
+void Progress::show(const std::string& what) {
     if (mode_ == Mode::quiet) return;
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    shown_ = Clock::now();
+    const double seconds = std::chrono::duration<double>(shown_ - begin_).count();
     if (terminal_) {
-        fmt::print(stderr, "\r\033[K[{}/{}] {:.0f} s  {:.90}", done, total, seconds, what);
+        fmt::print(stderr, "\r\033[K{} {:.0f} s  {:.90}", steps_, seconds, what);
         line_shown_ = true;
     } else {
-        fmt::print(stderr, "[{}/{}] {:.0f} s  {}\n", done, total, seconds, what);
+        fmt::print(stderr, "{} {:.0f} s  {}\n", steps_, seconds, what);
     }
     std::fflush(stderr);
 }

@@ -25,6 +25,9 @@ class Progress {
     void log_to(const std::filesystem::path& file);
     /// `done` of `total` steps are finished and `what` comes next.
     void step(const std::string& what, int done, int total);
+    /// How far the step under way has got: a few times a second on a terminal, now and then
+    /// elsewhere, never in the log.
+    void update(const std::string& what);
     /// A line that stays.
     void note(const std::string& text);
     /// The same for something that went wrong: shown even when quiet.
@@ -35,12 +38,17 @@ class Progress {
     void clear();
 
   private:
+    using Clock = std::chrono::steady_clock;
+
     void log(const std::string& text);
+    void show(const std::string& what);
 
     Mode mode_;
     bool terminal_ = false;
     bool line_shown_ = false;
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    Clock::time_point begin_ = Clock::now();
+    Clock::time_point shown_ = begin_;  ///< when something was last written
+    std::string steps_;                 ///< "[3/40]" of the step under way
     std::ofstream log_;
 };
 

@@ -15,7 +15,8 @@ RunOutcome run_experiment(taskpool::gpu::Device& device, const config::Config& c
     RunOutcome outcome{path, {}, {}};
     try {
         SamplesFile samples(folder.samples());
-        Session session{device, config, registries, folder, samples, progress};
+        TruthCache cache(options.cache, [&](const std::string& line) { progress.note(line); });
+        Session session{device, config, registries, folder, samples, progress, cache};
         config.kind == "build" ? run_builds(session) : run_shadows(session);
         outcome.failures = session.failures;
         outcome.results = summarise(read_samples(folder.samples()));

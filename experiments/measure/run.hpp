@@ -10,6 +10,7 @@ struct RunOptions {
     std::filesystem::path out{};  ///< empty: a fresh folder below runs/
     bool resume = false;
     std::string command_line{};
+    std::filesystem::path cache{};  ///< folder of what is worth keeping between runs; empty: none
 };
 
 struct RunOutcome {

@@ -17,14 +17,6 @@ namespace {
 
 constexpr const char* kHeader = "scene,method,variant,frame,repetition,metric,value,unit\n";
 
-/// RFC 4180: labels hold commas.
-std::string quoted(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string out = "\"";
-    for (char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-    return out + '"';
-}
-
 std::vector<std::string> fields(std::string_view line) {
     std::vector<std::string> list(1);
     bool inside = false;
@@ -98,6 +90,13 @@ Contents read(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string out = "\"";
+    for (char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+    return out + '"';
+}
+
 std::vector<Row> read_samples(const std::filesystem::path& path) { return read(path).rows; }
 
 SamplesFile::SamplesFile(std::filesystem::path path) : path_(std::move(path)) {
@@ -119,12 +118,13 @@ SamplesFile::~SamplesFile() {
 }
 
 void SamplesFile::append(const Key& key, const structures::Samples& samples) {
-    const std::string prefix = fmt::format("{},{},{},{},{}", quoted(key.scene), quoted(key.method),
-                                           quoted(key.variant), key.frame, key.repetition);
+    const std::string prefix =
+        fmt::format("{},{},{},{},{}", csv_field(key.scene), csv_field(key.method),
+                    csv_field(key.variant), key.frame, key.repetition);
     std::string text;
     for (const structures::Sample& sample : samples)
-        text += fmt::format("{},{},{},{}\n", prefix, quoted(sample.metric), sample.value,
-                            quoted(sample.unit));
+        text += fmt::format("{},{},{},{}\n", prefix, csv_field(sample.metric), sample.value,
+                            csv_field(sample.unit));
     write(text + fmt::format("{},{},1,1\n", prefix, kComplete));
     complete_.insert(key);
 }

@@ -24,6 +24,9 @@ struct OutputError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// `text` as a field of a CSV line, quoted as in RFC 4180 if it must be: labels hold commas.
+std::string csv_field(const std::string& text);
+
 struct Key {
     std::string scene, method, variant;
     int frame = 0;

@@ -21,9 +21,13 @@ bool Session::attempt(const std::string& place, const std::function<void()>& wor
         message = error.what();
     }
     std::replace(message.begin(), message.end(), '\n', ' ');
-    failures.push_back(place + ": " + message);
-    progress.error(failures.back());
+    fail(place + ": " + message);
     return false;
+}
+
+void Session::fail(const std::string& message) {
+    failures.push_back(message);
+    progress.error(message);
 }
 
 }  // namespace experiments::measure

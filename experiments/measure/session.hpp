@@ -10,6 +10,7 @@
 #include "experiments/measure/progress.hpp"
 #include "experiments/measure/run_folder.hpp"
 #include "experiments/measure/samples_file.hpp"
+#include "experiments/measure/truth_cache.hpp"
 #include "shadows/method.hpp"
 #include "structures/structure.hpp"
 
@@ -32,16 +33,22 @@ struct Session {
     RunFolder& folder;
     SamplesFile& samples;
     Progress& progress;
+    TruthCache& truth_cache;
     std::vector<std::string> failures{};
     int steps_done = 0;
 
     int steps_total() const {
         return int(config.scenes.size() * config.methods.size()) * (config.warmup + config.repeat);
     }
+    /// The next step of steps_total() begins.
     void step(const std::string& what) { progress.step(what, steps_done++, steps_total()); }
+    /// Says what goes on before it.
+    void show_step(const std::string& what) { progress.step(what, steps_done, steps_total()); }
     /// Runs `work`. An exception becomes a failure of the run, named by `place`, and false; the run
     /// goes on. Lost devices and unwritable results end it: those exceptions pass.
     bool attempt(const std::string& place, const std::function<void()>& work);
+    /// Notes a failure of the run, one line; the run goes on.
+    void fail(const std::string& message);
 };
 
 /// kind = "shadows": builds and queries every method on every scene, compares the answers.

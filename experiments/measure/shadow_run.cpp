@@ -4,8 +4,10 @@
 
 #include <bit>
 #include <memory>
+#include <optional>
 
 #include "experiments/gbuffer/gbuffer.hpp"
+#include "experiments/measure/accuracy.hpp"
 #include "experiments/measure/pictures.hpp"
 #include "experiments/measure/scene_input.hpp"
 #include "experiments/measure/session.hpp"
@@ -42,6 +44,10 @@ double value_of(const structures::Samples& samples, std::string_view metric) {
     return 0;
 }
 
+void add(structures::Samples& samples, const structures::Samples& more) {
+    samples.insert(samples.end(), more.begin(), more.end());
+}
+
 /// Build and query once; the samples of both and their sum.
 structures::Samples answer(Contestant& contestant, const SceneInput& input,
                            const shadows::Points& points) {
@@ -50,7 +56,7 @@ structures::Samples answer(Contestant& contestant, const SceneInput& input,
     if (contestant.visible.words.size() != points.count() / 32)
         throw std::runtime_error(fmt::format("answered {} words of points, expected {}",
                                              contestant.visible.words.size(), points.count() / 32));
-    samples.insert(samples.end(), asked.begin(), asked.end());
+    add(samples, asked);
     samples.push_back(
         {"total_ms", value_of(samples, "build_ms") + value_of(samples, "query_ms"), "ms"});
     return samples;
@@ -61,8 +67,7 @@ class SceneRun {
     SceneRun(Session& session, const config::Scene& scene) : session_(session), scene_(scene) {}
 
     void run() {
-        session_.step(scene_.name + ": loading");
-        --session_.steps_done;
+        session_.show_step(scene_.name + ": loading");
         const SceneInput input = load_scene(scene_);
         const gbuffer::GBuffer gbuffer = gbuffer::render_gbuffer(
             session_.device, input.mesh, input.camera, scene_.width, scene_.height);
@@ -71,6 +76,10 @@ class SceneRun {
         if (gbuffer.points.valid_count() == 0)
             session_.progress.note(scene_.name + ": the camera sees no geometry");
 
+        if (session_.config.truth) {
+            session_.show_step(scene_.name + ": truth");
+            judgement_.emplace(session_, scene_.name, input, gbuffer.points);
+        }
         prepare(input);
         for (int i = 0; i < session_.config.warmup; ++i)
             for (Contestant& contestant : contestants_) attempt(contestant, input, -1);
@@ -79,15 +88,16 @@ class SceneRun {
         for (int i = 0; i < session_.config.repeat; ++i)
             for (Contestant& contestant : contestants_) attempt(contestant, input, i);
 
-        draw(input);
+        if (session_.config.pictures) draw(input);
         // A scene with a failure stays open, so that --resume tries it again.
         for (const Contestant& contestant : contestants_)
             if (!contestant.method) return;
-        session_.samples.append({scene_.name, kSceneRows, "", 0, 0},
-                                {{"gbuffer_ms", gbuffer.milliseconds, "ms"},
-                                 {"points", double(gbuffer.points.valid_count())},
-                                 {"triangles", double(input.mesh.triangle_count())},
-                                 {"degenerate", double(input.report.degenerate)}});
+        structures::Samples facts{{"gbuffer_ms", gbuffer.milliseconds, "ms"},
+                                  {"points", double(gbuffer.points.valid_count())},
+                                  {"triangles", double(input.mesh.triangle_count())},
+                                  {"degenerate", double(input.report.degenerate)}};
+        if (judgement_) add(facts, judgement_->effort());
+        session_.samples.append({scene_.name, kSceneRows, "", 0, 0}, facts);
     }
 
   private:
@@ -133,6 +143,9 @@ class SceneRun {
         samples.push_back({"points", double(points_->valid_count())});
         samples.push_back({"shadowed", shadowed});
         if (!reference_.empty()) samples.push_back({"differing_points", differing});
+        if (!judgement_) return;
+        samples.push_back({"claims_exact", double(contestant.method->claims_exact())});
+        add(samples, judgement_->score(contestant.visible));
     }
 
     void draw(const SceneInput& input) {
@@ -143,7 +156,10 @@ class SceneRun {
                                   contestant.config->variant};
                 pictures.shaded(*points_, contestant.visible, input.light);
                 pictures.visibility(*points_, contestant.visible);
-                if (!reference_.empty())
+                if (judgement_)
+                    pictures.errors(*points_, contestant.visible, input.light,
+                                    judgement_->mask(contestant.visible));
+                else if (!reference_.empty())
                     pictures.difference(*points_, contestant.visible, reference_);
                 pictures.heat(*points_, contestant.method->heat());
             });
@@ -155,6 +171,7 @@ class SceneRun {
     const shadows::Points* points_ = nullptr;
     std::vector<std::uint32_t> mask_, reference_;
     std::vector<Contestant> contestants_;
+    std::optional<Judgement> judgement_;  ///< none if the config wants no truth
 };
 
 }  // namespace
@@ -167,6 +184,7 @@ void run_shadows(Session& session) {
         if (session.samples.complete({scene.name, kSceneRows, "", 0, 0})) continue;
         session.attempt(scene.name, [&] { SceneRun(session, scene).run(); });
     }
+    check_claims(session);
 }
 
 }  // namespace experiments::measure

@@ -39,6 +39,21 @@ svg text { fill: var(--ink); font: 12px system-ui, "DejaVu Sans", sans-serif; }
 svg .title { font-weight: 600; font-size: 13px; } svg .value { text-anchor: end; }
 svg .bar { fill: var(--bar); } svg .track { fill: var(--bar2); opacity: .25; }
 svg .spread { stroke: var(--mark); stroke-width: 1.5; fill: none; }
+svg.pareto { display: block; width: 100%; min-width: 44rem; height: auto; }
+svg .middle { text-anchor: middle; } svg .soft, svg .tick { fill: var(--soft); }
+svg .tick { font-size: 11px; } svg .grid { stroke: var(--line); }
+svg .zero { stroke: var(--soft); stroke-dasharray: 5 4; }
+svg .label { font-size: 11px; fill: var(--soft); paint-order: stroke; stroke: var(--card);
+  stroke-width: 3px; } svg .strong { fill: var(--ink); font-weight: 600; }
+svg .leader { stroke: var(--soft); stroke-width: .75; }
+svg .front { fill: none; stroke: var(--mark); stroke-width: 1.5; opacity: .6; }
+svg .mark { fill: var(--c); stroke: var(--c); stroke-width: 1.75; } svg .open { fill: var(--card); }
+svg .span { stroke: var(--c); stroke-width: 1.5; opacity: .5; }
+.s0 { --c: #2f7d5b; } .s1 { --c: #0072b2; } .s2 { --c: #d55e00; } .s3 { --c: #9a4f8c; }
+.s4 { --c: #b08900; } .s5 { --c: #3aa0d8; } .s6 { --c: #7a5230; } .s7 { --c: #777f86; }
+@media (prefers-color-scheme: dark) { .s0 { --c: #4fae84; } .s1 { --c: #4da6e0; }
+  .s2 { --c: #f08a3c; } .s3 { --c: #cc79a7; } .s4 { --c: #e3b93a; } .s5 { --c: #8fd0f5; }
+  .s6 { --c: #b98a60; } .s7 { --c: #a3abb2; } }
 .pictures { display: grid; gap: 1rem;
   grid-template-columns: repeat(auto-fill, minmax(min(22rem, 100%), 1fr)); }
 figure { margin: 0; } figure img { width: 100%; height: auto; border-radius: .5rem;

@@ -10,6 +10,7 @@
 #include "experiments/measure/summary.hpp"
 #include "experiments/report/charts.hpp"
 #include "experiments/report/html.hpp"
+#include "experiments/report/pareto.hpp"
 
 namespace experiments::report {
 namespace {
@@ -128,6 +129,15 @@ std::string charts(const Results& results) {
     return html.empty() ? html : "<div class=\"charts\">\n" + html + "</div>\n";
 }
 
+std::string pareto(const Results& results) {
+    const std::vector<Tradeoff> tradeoffs = find_tradeoffs(results);
+    if (tradeoffs.size() < 2) return {};
+    return "<div class=\"scroll\">\n" + pareto_chart("Run time against error", tradeoffs) +
+           "</div>\n<p class=\"soft\">Line: the Pareto front. Filled marks: methods that claim "
+           "to be exact. Through each mark: fastest to slowest repetition. Logarithmic; errors "
+           "outside the rounding band alone.</p>\n";
+}
+
 /// What the reference method sees; of the others, where they differ from it, and what points cost.
 std::string pictures(const std::filesystem::path& run, const nlohmann::json& manifest,
                      const std::string& scene) {
@@ -205,7 +215,7 @@ std::string scene_section(const std::filesystem::path& run, const nlohmann::json
         html += fmt::format("<p class=\"soft\">{}</p>\n",
                             escape(fmt::format("{}", fmt::join(parts, " · "))));
     }
-    if (!results.empty()) html += table(results) + charts(results);
+    if (!results.empty()) html += table(results) + pareto(results) + charts(results);
     return html + pictures(run, manifest, scene) + "</section>\n";
 }
 
@@ -238,6 +248,8 @@ void write_report(const std::filesystem::path& run) {
                                  ": is no manifest of a run: " + error.what());
     }
     measure::write_text(run / "report.html", html);
+    const std::string csv = pareto_csv(results);
+    if (!csv.empty()) measure::write_text(run / "pareto.csv", csv);
 }
 
 }  // namespace experiments::report

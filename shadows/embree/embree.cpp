@@ -14,6 +14,9 @@ using structures::geometry::Light;
 
 constexpr std::uint32_t kProbePoints = 1 << 16;
 constexpr int kProbeRounds = 3;
+/// Embree ends the program at rays with a coordinate above 1.8e18; differences of two of these stay
+/// below that.
+constexpr float kLargestCoordinate = 9e17f;
 
 Trace trace_of(std::uint32_t width) {
     switch (width) {
@@ -33,6 +36,8 @@ Trace trace_of(std::uint32_t width) {
     }
 }
 
+float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
+
 }  // namespace
 
 EmbreeMethod::EmbreeMethod(const Config& config)
@@ -47,12 +52,21 @@ EmbreeMethod::EmbreeMethod(const Config& config)
 
 void EmbreeMethod::prepare(const structures::geometry::TriangleMesh& mesh) {
     scene_.load(mesh);
-    diagonal_ = glm::length(mesh.bounds().extent());
+    const structures::geometry::Aabb box = mesh.bounds();
+    diagonal_ = glm::length(box.extent());
+    largest_ =
+        mesh.triangles.empty() ? 0 : largest(glm::max(glm::abs(box.lower), glm::abs(box.upper)));
     rays_.reset();
     trace_ = trace_of(config_.width);  // width 0 decides anew for another scene
 }
 
 Samples EmbreeMethod::build(const Light& light) {
+    const bool is_point = light.type == Light::Type::point;
+    if (std::max(largest_, is_point ? largest(glm::abs(light.vector)) : 0) > kLargestCoordinate)
+        throw std::invalid_argument(
+            fmt::format("embree: a coordinate of the light or the mesh exceeds {:g}, beyond which "
+                        "Embree traces no ray; move the light nearer, or make it directional",
+                        kLargestCoordinate));
     const double build_ms = scene_.build(config_.quality);
     rays_ = std::make_unique<ShadowRays>(light, diagonal_, config_.bias);
     return {{"build_ms", build_ms, "ms"},

@@ -32,7 +32,8 @@ class EmbreeMethod final : public Method {
     explicit EmbreeMethod(const Config& config);
 
     void prepare(const structures::geometry::TriangleMesh& mesh) override;
-    /// build_ms and memory_bytes. The scene serves any light, but is built anew each time.
+    /// build_ms and memory_bytes. The scene serves any light, but is built anew each time. Throws
+    /// std::invalid_argument for coordinates that Embree takes no ray at (9e17).
     structures::Samples build(const structures::geometry::Light& light) override;
     /// query_ms, rays, mrays_per_s. Throws std::logic_error before build().
     structures::Samples query(const Points& points, Visibility& visible) override;
@@ -46,7 +47,8 @@ class EmbreeMethod final : public Method {
     Config config_;
     structures::embree::Scene scene_;
     Workers workers_;
-    float diagonal_ = 0;
+    float diagonal_ = 0;     ///< of the scene's bounds
+    float largest_ = 0;      ///< of its coordinates
     Trace trace_ = nullptr;  ///< null: width 0, not yet decided
     std::unique_ptr<ShadowRays> rays_;
 };

@@ -81,14 +81,18 @@ class Truth {
     Truth(const structures::geometry::TriangleMesh& mesh, const structures::geometry::Light& light);
     ~Truth();
 
+    /// Throws std::invalid_argument if the arrays differ in length, a point with geometry is not
+    /// finite, or its primitive is no triangle of the mesh.
     Verdicts judge(const PointArrays& points, const JudgeOptions& options) const;
 
     /// The exact answer for one point; `own` is the triangle it lies on, kNoReceiver if none.
+    /// Throws std::invalid_argument as judge() does.
     bool shadowed(glm::vec3 p, std::uint32_t own) const;
     /// Band of one point.
     double epsilon(glm::vec3 p) const;
-    /// The cheap band: whether the exact answers at p and at 14 points around it, `radius` away,
-    /// are not all the same.
+    /// The cheap band: whether the exact answers at p and at 14 points around it, `radius` away
+    /// along the axes and the diagonals of their octants, are not all the same. What it finds
+    /// within k epsilon, judge() calls ambiguous within k epsilon.
     bool changes_nearby(glm::vec3 p, std::uint32_t own, double radius) const;
 
   private:

@@ -18,6 +18,7 @@ const Parameter kMethodParameters[] = {
     {"fail", std::string("never"), "where to throw", {"never", "prepare", "build", "query", "nan"}},
     {"kill_at", std::int64_t{0}, "kill the process at this query", {}, 0, 1e6},
     {"heat", false, "pretend to have statistics"},
+    {"exact", false, "claim to be exact"},
 };
 
 /// Shadows in stripes of 64 points; 'times' that depend on the number of queries only.
@@ -46,6 +47,7 @@ class Stripes : public shadows::Method {
         return {{"query_ms", settings_.real("scale") * (10 + double(queries_ % 3)), "ms"}};
     }
     std::vector<float> heat() override { return heat_; }
+    bool claims_exact() const override { return settings_.boolean("exact"); }
 
   private:
     void fail_at(const char* place) const {

@@ -32,7 +32,9 @@ void CliTest::TearDown() {
 
 Outcome CliTest::shell(const std::string& command) {
     const fs::path out = folder_ / "stdout.txt", err = folder_ / "stderr.txt";
-    const std::string line = "cd '" + folder_.string() + "' && { " + command + "\n} >'" +
+    // Nothing is taken from, or left in, the user's own cache.
+    const std::string line = "cd '" + folder_.string() + "' && export GROVE_CACHE='" +
+                             (folder_ / "cache").string() + "' && { " + command + "\n} >'" +
                              out.string() + "' 2>'" + err.string() + "' </dev/null";
     const int status = std::system(line.c_str());
     Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),

@@ -72,6 +72,7 @@ TEST_F(ReportTest, ShowsTablesBarsAndPicturesInABrowser) {
         "q('table.results tr').length, q('img').length,"
         "q('img').filter(i => i.naturalWidth > 0).length,"
         "q('rect.bar').filter(b => b.getBoundingClientRect().width > 1).length,"
+        "q('svg.pareto title').length,"
         "document.documentElement.scrollWidth <= innerWidth ? 'fits' : 'too wide'].join(' ');"
         "};</script></body>";
     html.replace(html.find("</body>"), 7, probe);
@@ -79,8 +80,9 @@ TEST_F(ReportTest, ShowsTablesBarsAndPicturesInABrowser) {
     for (const char* size : {"1280,900", "500,900"}) {
         const Outcome page = browser(std::string("--window-size=") + size + " --dump-dom 'file://" +
                                      (folder_ / "probe.html").string() + "'");
-        // Header and two rows; shaded, visibility, difference, heat; 4 charts of 2 bars.
-        EXPECT_THAT(page.out, HasSubstr("<pre id=\"probe\">3 4 4 8 fits</pre>")) << page.err;
+        // Header and two rows; shaded, visibility, errors of both, heat; 4 charts of 2 bars; 2
+        // marks of run time against error.
+        EXPECT_THAT(page.out, HasSubstr("<pre id=\"probe\">3 5 5 8 2 fits</pre>")) << page.err;
     }
 }
 

@@ -45,7 +45,7 @@ TEST_F(RunTest, WritesEverythingAndPrintsTheFolderLast) {
         EXPECT_TRUE(fs::exists(folder_ / "r" / image.at("file").get<std::string>()));
     }
     EXPECT_EQ(kinds, (std::map<std::string, int>{
-                         {"shaded", 2}, {"visibility", 2}, {"difference", 1}, {"heat", 1}}));
+                         {"shaded", 2}, {"visibility", 2}, {"errors", 2}, {"heat", 1}}));
 }
 
 TEST_F(RunTest, MethodsTakeTurns) {
