@@ -18,19 +18,19 @@ using namespace taskpool;
 constexpr std::uint32_t kDeterministicLeafRange = 8;
 constexpr std::uint32_t kMaxLeafRange = 32;  // a set of lanes is one word there
 
-// The kernel's struct Task: 19 words of range and rule, 6 of bounds, and five boxes of keys.
+// The kernel's struct Task: 20 words of range and rule, 6 of bounds, and five boxes of keys.
 struct Task {
     uint first, count, node, depth, side;
     uint box[kKeys];
     float center_lower[3], center_upper[3];
     uint rule, axis;
     float middle;
-    uint cut, looks;
+    uint cut, looks, axes;
     float bin_scale[3], bin_offset[3];
     uint left_count;
     uint children[4 * kKeys];
 };
-static_assert(sizeof(Task) == 53 * 4);
+static_assert(sizeof(Task) == 54 * 4);
 
 struct Client {
     std::uint64_t primitives[2], order, nodes, scratch, input;

@@ -12,6 +12,7 @@ layout(constant_id = 17) const uint kSets = 3;       // axes per lane: 3 kAxisLa
 const uint kRows = kSets * kSlots;
 const uint kBinWords = kKeys + 1;
 const uint kNone = 0xffffffffu;
+const float kAxisMargin = 1.05;  // by how much a closer look may better a split
 const float kInfinity = 1.0 / 0.0;
 
 struct Bin {
@@ -37,32 +38,31 @@ float bin_scale(float extent) {
     return float(reciprocal * kBins) * uintBitsToFloat((245 - exponent) << 23);
 }
 
-/// The bins of a centre. Never evaluated otherwise: looks and partitions have to agree. The sum's last
+/// The bin of a centre. Never evaluated otherwise: looks and partitions have to agree. The sum's last
 /// bits are the bin, as conversions to integers cost lavapipe ten times as much.
-uvec3 bins_of(Task task, vec3 center) {
-    precise vec3 place = (center - task.center_lower) * task.bin_scale + task.bin_offset;
+uint bin_of(float center, float origin, float scale, float offset) {
+    precise float place = (center - origin) * scale + offset;
     const float magic = 8388607.5;  // 2^23 - 1/2
-    precise vec3 rounded = clamp(place, vec3(0.5), vec3(float(kBins) - 0.5)) + magic;
+    precise float rounded = clamp(place, 0.5, float(kBins) - 0.5) + magic;
     return floatBitsToUint(rounded) & (kBins - 1);
+}
+uint bin_of(Task task, vec3 center, uint axis) {
+    return bin_of(component(center, axis), component(task.center_lower, axis),
+                  component(task.bin_scale, axis), component(task.bin_offset, axis));
 }
 
 void clear_bins(out Bin bins[kRows]) {
     [[unroll]] for (uint row = 0; row < kRows; ++row) bins[row] = Bin(empty_keys(), 0);
 }
 
-void take_in(inout KeyBox into, KeyBox box, bool taken) {
-    [[unroll]] for (uint k = 0; k < 3; ++k) {
-        into.low[k] = taken ? max(into.low[k], box.low[k]) : into.low[k];
-        into.high[k] = taken ? max(into.high[k], box.high[k]) : into.high[k];
-    }
-}
-
-/// Passes the primitives of [begin, end) by the bins.
+/// Passes the primitives of [begin, end) by the bins of the task's axes.
 void pass_primitives(Task task, uint begin, uint end, inout Bin bins[kRows]) {
     uint mask[kSets], pattern[kSets];  // what a primitive's word of bins shows to this lane
+    bool wanted[kSets];
     [[unroll]] for (uint set = 0; set < kSets; ++set) {
         const uint shift = 8 * min(axis_of(set), 3u);
         mask[set] = 0xffu << shift;
+        wanted[set] = (task.axes >> axis_of(set) & 1) != 0;
         pattern[set] = (axis_of(set) < 3 ? axis_lane() * kSlots : 0xffu) << shift;
     }
     Primitives primitives = primitives_of(task.side);
@@ -73,8 +73,9 @@ void pass_primitives(Task task, uint begin, uint end, inout Bin bins[kRows]) {
         next = primitives.at[min(mine + gl_SubgroupSize, end - 1)];
         precise vec3 center = primitive.lower + primitive.upper;
         const KeyBox box = keys_of(primitive.lower, primitive.upper);
-        const uvec3 place = bins_of(task, center);
-        const uint word = mine < end ? place.x | place.y << 8 | place.z << 16 : 0x7fffffffu;
+        const uint word = mine < end ? bin_of(task, center, 0) | bin_of(task, center, 1) << 8 |
+                                           bin_of(task, center, 2) << 16
+                                     : 0x7fffffffu;
         [[unroll]] for (uint first = 0; first < kLanes; first += kAxisLanes) {
             uint passing[kAxisLanes];
             KeyBox passing_box[kAxisLanes];
@@ -83,16 +84,18 @@ void pass_primitives(Task task, uint begin, uint end, inout Bin bins[kRows]) {
                 passing_box[k] = KeyBox(subgroupShuffle(box.low, first + k),
                                         subgroupShuffle(box.high, first + k));
             }
-            [[unroll]] for (uint row = 0; row < kRows; ++row) {
-                const uint set = row / kSlots, shift = 8 * min(axis_of(set), 3u);
-                const uint bin = pattern[set] + (row % kSlots << shift);
-                Bin taking = bins[row];
-                [[unroll]] for (uint k = 0; k < kAxisLanes; ++k) {
-                    const bool taken = (passing[k] & mask[set]) == bin;
-                    take_in(taking.box, passing_box[k], taken);
-                    taking.count += taken ? 1 : 0;
+            [[unroll]] for (uint set = 0; set < kSets; ++set) {
+                if (!wanted[set]) continue;
+                [[unroll]] for (uint slot = 0; slot < kSlots; ++slot) {
+                    const uint bin = pattern[set] + (slot << 8 * min(axis_of(set), 3u));
+                    Bin taking = bins[set * kSlots + slot];
+                    [[unroll]] for (uint k = 0; k < kAxisLanes; ++k) {
+                        const bool taken = (passing[k] & mask[set]) == bin;
+                        take_in(taking.box, passing_box[k], taken);
+                        taking.count += taken ? 1 : 0;
+                    }
+                    bins[set * kSlots + slot] = taking;
                 }
-                bins[row] = taking;
             }
         }
         pool_spend(kLanes / kAxisLanes + 2);
@@ -164,7 +167,8 @@ void best_splits(Bin bins[kRows], out vec3 cost, out uvec3 cut) {
 }
 
 /// Sets the task's split to the cheapest of the bins'. Unless this is the last look, the next one's bins
-/// are set: all but the outermost two share out what the two bins beside each axis' best split cover.
+/// are set: all but the outermost two share out what the two bins beside each axis' best split cover;
+/// axes that are too expensive to catch up are left out.
 void choose_split(inout Task task, Bin bins[kRows], bool last) {
     vec3 cost;
     uvec3 cut;
@@ -175,6 +179,8 @@ void choose_split(inout Task task, Bin bins[kRows], bool last) {
         if (task.cut != kNone) task.rule = kRuleBins;
         return;
     }
+    const float worth = kAxisMargin * min(min(cost.x, cost.y), cost.z);
+    task.axes = (cost.x <= worth ? 1 : 0) | (cost.y <= worth ? 2 : 0) | (cost.z <= worth ? 4 : 0);
     const float finer = float(kBins / 2 - 1);
     precise vec3 offset = finer * (task.bin_offset - vec3(cut)) + 1.0;
     const bvec3 refined = notEqual(cut, uvec3(kNone));

@@ -31,6 +31,7 @@ struct Task {
     float middle;
     uint cut;
     bool looks;  // for the best split between bins; otherwise the rule is set
+    uint axes;  // a bit for each that is looked at
     vec3 bin_scale, bin_offset;
     uint left_count;
     KeyBox left_box, left_centers, right_box, right_centers;

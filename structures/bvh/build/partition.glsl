@@ -5,7 +5,7 @@
 /// Side test of a task's split, evaluated the same way wherever it is needed.
 bool goes_left(Task task, uint place, vec3 center) {
     if (task.rule == kRuleHalve) return place < task.first + task.count / 2;
-    if (task.rule == kRuleBins) return component(bins_of(task, center), task.axis) <= task.cut;
+    if (task.rule == kRuleBins) return bin_of(task, center, task.axis) <= task.cut;
     return component(center, task.axis) <= task.middle;
 }
 
@@ -43,11 +43,10 @@ uint move_range(Task task, uint begin, uint end, uint left, uint right, out KeyB
         left += left_count;
         right -= min(end - i, gl_SubgroupSize) - left_count;
         const KeyBox keys = keys_of(primitive.lower, primitive.upper), key = keys_of(center, center);
-        const uint left_mask = is_left ? 0xffffffffu : 0, right_mask = is_right ? 0xffffffffu : 0;
-        boxes[0] = join(boxes[0], masked(left_mask, keys));
-        boxes[1] = join(boxes[1], masked(left_mask, key));
-        boxes[2] = join(boxes[2], masked(right_mask, keys));
-        boxes[3] = join(boxes[3], masked(right_mask, key));
+        take_in(boxes[0], keys, is_left);
+        take_in(boxes[1], key, is_left);
+        take_in(boxes[2], keys, is_right);
+        take_in(boxes[3], key, is_right);
     }
     join_lanes(boxes);
     pool_spend((end - begin) / gl_SubgroupSize + 2 + kReduceIterations);

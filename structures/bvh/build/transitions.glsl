@@ -16,6 +16,7 @@ void set_rule(inout Task task) {
     const bool halve = task.depth + halvings >= kMaxDepth || extent == vec3(0);
     task.rule = kSpatialMedian && !halve ? kRuleMiddle : kRuleHalve;
     task.looks = !kSpatialMedian && !halve;
+    task.axes = 7;
     task.bin_offset = vec3(0);
     task.bin_scale = vec3(bin_scale(extent.x), bin_scale(extent.y), bin_scale(extent.z));
     task.axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
