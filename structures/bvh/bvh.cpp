@@ -54,11 +54,13 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
     pool::ClientSpec spec;
     spec.loops = 64;
     spec.task_bytes = sizeof(Task);
-    // A small task's looks and its move, or a subgroup's leaves, and the transition.
+    // A small task's look and its move, or a subtree of one primitive here, the others there; and
+    // the transition.
     const std::uint32_t groups = kChunkPrimitives / lanes,
                         leaf_range = leaf_range_of(lanes, config);
-    spec.chunk_iterations =
-        kChunkPrimitives / axis_lanes + 4 * groups + 2 * (leaf_range + 2) * (leaf_range + 2) + 1024;
+    const std::uint32_t small = kChunkPrimitives / axis_lanes + 4 * groups,
+                        subtree = 40 * kSubtreePrimitives + 2 * (leaf_range + 2) * (leaf_range + 2);
+    spec.chunk_iterations = std::max(small, subtree) + 1024;
     spec.constants = {
         {16, axis_lanes},
         {17, (3 * axis_lanes + lanes - 1) / lanes},
@@ -162,8 +164,8 @@ Tree BvhBuild::read_back() const {
 }
 
 std::span<const std::string> phase_names() {
-    static const std::string names[] = {"setup",     "compact", "bins",  "count",
-                                        "partition", "small",   "leaves"};
+    static const std::string names[] = {"setup",     "compact", "bins",   "count",
+                                        "partition", "small",   "subtree"};
     return names;
 }
 

@@ -30,14 +30,6 @@ uint bin_of_row(uint row) {
     return axis_of(row / kSlots) * kBins + axis_lane() * kSlots + row % kSlots;
 }
 
-/// About kBins / extent, made of exact operations; 0 where nothing can be told apart.
-float bin_scale(float extent) {
-    const uint bits = floatBitsToUint(extent), exponent = bits >> 23;
-    const uint reciprocal = 0xffffffffu / (bits & 0x7fffffu | 0x800000u);  // 256 to 511
-    if (exponent < 32 || exponent > 230) return 0;
-    return float(reciprocal * kBins) * uintBitsToFloat((245 - exponent) << 23);
-}
-
 /// The bin of a centre. Never evaluated otherwise: looks and partitions have to agree. The sum's last
 /// bits are the bin, as conversions to integers cost lavapipe ten times as much.
 uint bin_of(float center, float origin, float scale, float offset) {
@@ -104,8 +96,7 @@ void pass_primitives(Task task, uint begin, uint end, inout Bin bins[kRows]) {
 
 Bin join(Bin a, Bin b) { return Bin(join(a.box, b.box), a.count + b.count); }
 Bin bin_from(uint lane, Bin bin) {
-    return Bin(KeyBox(subgroupShuffle(bin.box.low, lane), subgroupShuffle(bin.box.high, lane)),
-               subgroupShuffle(bin.count, lane));
+    return Bin(box_from(lane, bin.box), subgroupShuffle(bin.count, lane));
 }
 Bin masked(uint mask, Bin bin) { return Bin(masked(mask, bin.box), bin.count & mask); }
 

@@ -60,6 +60,7 @@ Primitives primitives_of(uint side) {
                                 : uint64_t(pool.client.primitives[1]));
 }
 
+#include "structures/bvh/build/ranges.glsl"
 #include "structures/bvh/build/bins.glsl"
 #include "structures/bvh/build/scratch.glsl"
 #include "structures/bvh/build/setup.glsl"
@@ -74,8 +75,9 @@ void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
         case kPhaseSetup: setup_chunk(begin, end); break;
         case kPhaseCompact: compact_chunk(begin, end); break;
         case kPhaseCount: count_chunk(task, begin, end); break;
-        case kPhaseLeaves: build_leaves(task); break;
-        default: split_chunk(task, phase, step, begin, end);
+        default:
+            if (phase == kPhaseSubtree) pool_progress(task.count);
+            split_chunk(task, phase, step, begin, end);
     }
 }
 
@@ -88,7 +90,6 @@ Next finish_step(inout Task task, uint phase, uint step) {
         case kPhasePartition: return after_partition(task);
         case kPhaseSmall: return after_small(task);
     }
-    pool_progress(task.count);
     return next_end();
 }
 

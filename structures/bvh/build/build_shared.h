@@ -19,11 +19,12 @@ BVH_CONSTANT uint kPhaseCompact = 1;    // closes the gaps that degenerate trian
 BVH_CONSTANT uint kPhaseBins = 2;       // SAH over bins of a large range
 BVH_CONSTANT uint kPhaseCount = 3;      // per chunk, how many primitives go left
 BVH_CONSTANT uint kPhasePartition = 4;  // moves them
-BVH_CONSTANT uint kPhaseSmall = 5;      // chooses a plane and partitions, in one go
-BVH_CONSTANT uint kPhaseLeaves = 6;     // full SAH over a range that fits a subgroup
+BVH_CONSTANT uint kPhaseSmall = 5;      // chooses a split and partitions, in one go
+BVH_CONSTANT uint kPhaseSubtree = 6;    // all that is below a range of few primitives, in one go
 
 BVH_CONSTANT uint kChunkPrimitives = 1024;  // in a chunk, and in a small task at most
 BVH_CONSTANT uint kFewPrimitives = 32;      // so few get another look
+BVH_CONSTANT uint kSubtreePrimitives = 64;   // in a range whose subtree is built in one go, at most
 BVH_CONSTANT uint kBins = 16;               // of an axis, a power of two
 BVH_CONSTANT uint kKeys = 6;                // of a box: see keys_of() in keys.glsl
 

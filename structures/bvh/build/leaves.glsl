@@ -18,21 +18,17 @@ Candidate candidate_split(uint members, KeyBox mine, vec3 center, uint lanes, ou
     KeyBox left[3] = KeyBox[](empty_keys(), empty_keys(), empty_keys());
     KeyBox right[3] = left;
     uvec3 left_count = uvec3(0);
-    for (uint begin = 0; begin < lanes; begin += kAxisLanes) {
-        [[unroll]] for (uint k = 0; k < kAxisLanes; ++k) {
-            const uint lane = begin + k;
-            const KeyBox other =
-                KeyBox(subgroupShuffle(mine.low, lane), subgroupShuffle(mine.high, lane));
-            const vec3 place = subgroupShuffle(center, lane);
-            const bool same = (members >> lane & 1) != 0;
-            const bool first = lane <= gl_SubgroupInvocationID;
-            [[unroll]] for (uint axis = 0; axis < 3; ++axis) {
-                const bool before =
-                    place[axis] < center[axis] || (place[axis] == center[axis] && first);
-                take_in(left[axis], other, same && before);
-                take_in(right[axis], other, same && !before);
-                left_count[axis] += same && before ? 1 : 0;
-            }
+    for (uint lane = 0; lane < lanes; ++lane) {
+        const KeyBox other = KeyBox(subgroupShuffle(mine.low, lane), subgroupShuffle(mine.high, lane));
+        const vec3 place = subgroupShuffle(center, lane);
+        const uint same = (members >> lane & 1) != 0 ? 0xffffffffu : 0;
+        const bool first = lane <= gl_SubgroupInvocationID;
+        [[unroll]] for (uint axis = 0; axis < 3; ++axis) {
+            const uint lefts = place[axis] < center[axis] || (place[axis] == center[axis] && first)
+                                   ? same : 0;
+            left[axis] = join(left[axis], masked(lefts, other));
+            right[axis] = join(right[axis], masked(same ^ lefts, other));
+            left_count[axis] += lefts & 1;
         }
     }
     box = join(left[0], right[0]);
@@ -51,16 +47,12 @@ Candidate candidate_split(uint members, KeyBox mine, vec3 center, uint lanes, ou
 /// The cheapest candidate of a segment's lanes.
 Candidate best_of(uint members, Candidate mine, uint lanes) {
     Candidate best = Candidate(kInfinity, kNone);
-    for (uint begin = 0; begin < lanes; begin += kAxisLanes) {
-        [[unroll]] for (uint k = 0; k < kAxisLanes; ++k) {
-            const uint lane = begin + k;
-            const float cost = subgroupShuffle(mine.cost, lane);
-            const uint place = subgroupShuffle(mine.place, lane);
-            const bool take = (members >> lane & 1) != 0 &&
-                              (cost < best.cost || (cost == best.cost && place < best.place));
-            best.cost = take ? cost : best.cost;
-            best.place = take ? place : best.place;
-        }
+    for (uint lane = 0; lane < lanes; ++lane) {
+        const float cost = subgroupShuffle(mine.cost, lane);
+        const uint place = subgroupShuffle(mine.place, lane);
+        if ((members >> lane & 1) != 0 &&
+            (cost < best.cost || (cost == best.cost && place < best.place)))
+            best = Candidate(cost, place);
     }
     return best;
 }

@@ -97,37 +97,68 @@ uint looks(Task task) {
     return task.count > kChunkPrimitives || task.count <= kFewPrimitives ? 2 : 1;
 }
 
-/// A chunk of a large task's looks or of its partition, or a whole small task's looks and partition:
-/// together, so that there is one copy of each in the kernel.
+/// A chunk of a large task's looks or of its partition, or a whole small task's looks and partition, or
+/// a whole subtree: together, so that there is one copy of each in the kernel.
 void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
-    const bool small = phase == kPhaseSmall;
+    const bool subtree = phase == kPhaseSubtree, small = phase == kPhaseSmall || subtree;
     if (!small) touch(task, begin, end);
-    const uint all = looks(task), end_look = phase == kPhaseBins ? step + 1 : small ? all : 0;
-    for (uint look = phase == kPhaseBins ? step : 0; look < end_look; ++look) {
-        Bin bins[kRows];
-        clear_bins(bins);
-        pass_primitives(task, begin, end, bins);
-        const bool last = look + 1 == all;
-        if (small) choose_split(task, bins, last);
-        else {
-            flush_bins(task.first, bins);
-            if (last) tell_counts(begin, end, bins);
+    Range waiting;     // this lane's of the subtree's ranges that wait
+    uint waiting_count = 0;
+    bool more = true;
+    while (more) {
+        Range next;
+        if (subtree && task.count <= kLeafRange) {
+            build_leaves(task);
+            more = waiting_count > 0;
+            if (more) next = range_from(--waiting_count, waiting);
+        } else {
+            const uint all = looks(task);
+            const uint end_look = phase == kPhaseBins ? step + 1 : small ? all : 0;
+            for (uint look = phase == kPhaseBins ? step : 0; look < end_look; ++look) {
+                Bin bins[kRows];
+                clear_bins(bins);
+                pass_primitives(task, begin, end, bins);
+                const bool last = look + 1 == all;
+                if (small) choose_split(task, bins, last);
+                else {
+                    flush_bins(task.first, bins);
+                    if (last) tell_counts(begin, end, bins);
+                }
+            }
+            if (phase == kPhaseBins) return;
+            uint left = task.first, right = task.first + task.count;
+            if (!small) {
+                const uint left_before = pool.client.scratch.words[chunk_word(begin, end)];
+                left += left_before;
+                right -= begin - task.first - left_before;
+            }
+            KeyBox boxes[4];
+            const uint left_count = move_range(task, begin, end, left, right, boxes);
+            if (!small) {
+                flush_boxes(task.first, boxes);
+                return;
+            }
+            task.left_count = left_count;
+            take_children(task, boxes);
+            if (!subtree) return;
+            if (left_count == 0 || left_count == task.count) {
+                // The middle of the centres separated nothing.
+                task.rule = kRuleHalve;
+                task.looks = false;
+                continue;
+            }
+            write_inner_node(task);
+            // The smaller child comes first: at most log2(kSubtreePrimitives / kLeafRange) wait.
+            const uint smaller = 2 * left_count <= task.count ? 0 : 1;
+            if (gl_SubgroupInvocationID == waiting_count) waiting = child_range(task, 1 - smaller);
+            ++waiting_count;
+            next = child_range(task, smaller);
         }
+        if (more) {
+            task = task_of(next);
+            begin = task.first;
+            end = task.first + task.count;
+        }
+        pool_spend(2);
     }
-    if (phase == kPhaseBins) return;
-
-    uint left = task.first, right = task.first + task.count;
-    if (!small) {
-        const uint left_before = pool.client.scratch.words[chunk_word(begin, end)];
-        left += left_before;
-        right -= begin - task.first - left_before;
-    }
-    KeyBox boxes[4];
-    const uint left_count = move_range(task, begin, end, left, right, boxes);
-    if (!small) {
-        flush_boxes(task.first, boxes);
-        return;
-    }
-    task.left_count = left_count;
-    take_children(task, boxes);
 }
