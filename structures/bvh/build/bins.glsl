@@ -113,12 +113,14 @@ Bin scan_lanes(Bin mine, bool down) {
     return sum;
 }
 
-/// Of the best split between bins on each axis: its cost (area * count over both sides), infinite if
+/// Of the best split between bins on each of `axes`: its cost (area * count over both sides), infinite if
 /// there is none, and the last bin on its left.
-void best_splits(Bin bins[kRows], out vec3 cost, out uvec3 cut) {
+void best_splits(uint axes, Bin bins[kRows], out vec3 cost, out uvec3 cut) {
     cost = vec3(kInfinity);
     cut = uvec3(kNone);
     [[unroll]] for (uint set = 0; set < kSets; ++set) {
+        // An axis that nobody looks at has empty bins.
+        if ((axes >> set * (kLanes / kAxisLanes) & (1u << kLanes / kAxisLanes) - 1) == 0) continue;
         Bin own = bins[set * kSlots];
         [[unroll]] for (uint slot = 1; slot < kSlots; ++slot) own = join(own, bins[set * kSlots + slot]);
         Bin left = scan_lanes(own, true);
@@ -163,7 +165,7 @@ void best_splits(Bin bins[kRows], out vec3 cost, out uvec3 cut) {
 void choose_split(inout Task task, Bin bins[kRows], bool last) {
     vec3 cost;
     uvec3 cut;
-    best_splits(bins, cost, cut);
+    best_splits(task.axes, bins, cost, cut);
     if (last) {
         task.axis = cost.x <= cost.y && cost.x <= cost.z ? 0 : cost.y <= cost.z ? 1 : 2;
         task.cut = component(cut, task.axis);

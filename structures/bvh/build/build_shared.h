@@ -24,17 +24,17 @@ BVH_CONSTANT uint kPhaseSubtree = 6;    // all that is below a range of few prim
 
 BVH_CONSTANT uint kChunkPrimitives = 1024;  // in a chunk, and in a small task at most
 BVH_CONSTANT uint kFewPrimitives = 32;      // so few get another look
-BVH_CONSTANT uint kSubtreePrimitives = 64;   // in a range whose subtree is built in one go, at most
+BVH_CONSTANT uint kSubtreePrimitives = 64;  // in a range whose subtree is built in one go, at most
 BVH_CONSTANT uint kBins = 16;               // of an axis, a power of two
 BVH_CONSTANT uint kKeys = 6;                // of a box: see keys_of() in keys.glsl
 
 // A triangle's box.
 struct Primitive {
     vec3 lower;
-    uint id;  // of the triangle
+    uint id;  // of the triangle; kNoPrimitive if it is degenerate
     vec3 upper;
-    uint valid;  // 0 if the triangle is degenerate
 };
+BVH_CONSTANT uint kNoPrimitive = 0xffffffffu;
 
 // The mesh.
 struct BuildInput {
@@ -49,7 +49,7 @@ struct BuildInput {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(Primitive) == 32);
+static_assert(sizeof(Primitive) == 28);
 static_assert(sizeof(BuildInput) == 24);
 }  // namespace structures::bvh
 #endif

@@ -81,13 +81,13 @@ void take_children(inout Task task, KeyBox boxes[4]) {
 }
 
 /// Brings the primitives of [begin, end) nearer: many misses at a time, where passing them one by one
-/// would wait for each. Spends what it reads, a one, lest it be left out.
+/// would wait for each. Makes some use of what it reads, lest it be left out.
 void touch(Task task, uint begin, uint end) {
     Primitives primitives = primitives_of(task.side);
     uint seen = 0;
     for (uint i = begin; i < end; i += 2 * kLanes)
-        seen |= primitives.at[min(i + 2 * gl_SubgroupInvocationID, end - 1)].valid;
-    pool_spend(seen + kChunkPrimitives / (2 * kLanes));
+        seen |= primitives.at[min(i + 2 * gl_SubgroupInvocationID, end - 1)].id;
+    pool_spend(min(seen, 1) + kChunkPrimitives / (2 * kLanes));
 }
 
 /// Looks that a task gets: finer ones pay where much is split, and where the tree is nearly done.

@@ -8,12 +8,18 @@ struct Range {
     KeyBox box, centers;
 };
 
-/// About kBins / extent, made of exact operations; 0 where nothing can be told apart.
+/// About kBins / extent, by Newton's method as divisions differ between devices; 0 where nothing can be
+/// told apart.
 float bin_scale(float extent) {
     const uint bits = floatBitsToUint(extent), exponent = bits >> 23;
-    const uint reciprocal = 0xffffffffu / (bits & 0x7fffffu | 0x800000u);  // 256 to 511
+    const float mantissa = uintBitsToFloat(bits & 0x7fffffu | 0x3f000000u);  // 0.5 to 1
+    precise float inverse = 2.9142 - 2.0 * mantissa;
+    [[unroll]] for (uint k = 0; k < 2; ++k) {
+        precise float better = inverse * (2.0 - mantissa * inverse);
+        inverse = better;
+    }
     if (exponent < 32 || exponent > 230) return 0;
-    return float(reciprocal * kBins) * uintBitsToFloat((245 - exponent) << 23);
+    return inverse * (float(kBins) * uintBitsToFloat((253 - exponent) << 23));
 }
 
 /// Rule of a fresh task. Halving bounds the depth: once only halving can still finish above kMaxDepth.

@@ -23,7 +23,8 @@ void setup_chunk(uint begin, uint end) {
                        c = mesh.positions.at[corners.z];
             valid = !degenerate(a, b, c);
             const vec3 lower = min(min(a, b), c), upper = max(max(a, b), c);
-            pool.client.primitives[0].at[mine] = Primitive(lower, mine, upper, valid ? 1 : 0);
+            pool.client.primitives[0].at[mine] = 
+                Primitive(lower, valid ? mine : kNoPrimitive, upper);
             precise vec3 center = lower + upper;
             if (valid) {
                 boxes[0] = join(boxes[0], keys_of(lower, upper));
@@ -44,7 +45,7 @@ void compact_chunk(uint begin, uint end) {
     for (uint i = begin; i < end; i += gl_SubgroupSize) {
         const uint mine = i + gl_SubgroupInvocationID;
         const Primitive primitive = pool.client.primitives[0].at[min(mine, end - 1)];
-        const bool valid = mine < end && primitive.valid != 0;
+        const bool valid = mine < end && primitive.id != kNoPrimitive;
         const uvec4 ballot = subgroupBallot(valid);
         if (valid)
             pool.client.primitives[1].at[target + subgroupBallotExclusiveBitCount(ballot)] = primitive;
