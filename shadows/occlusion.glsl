@@ -5,18 +5,34 @@
 //     if (primitive != own && occludes(s, a, b, c)) ...
 //
 // A hit is a proper crossing of the closed triangle, from either side, strictly between receiver
-// and light. A segment in the triangle's plane hits nothing; neither does one that ends on it.
+// and light. A segment in the triangle's plane hits nothing; neither does one that ends on it. The
+// answer is that of exact arithmetic on the single-precision inputs, whatever device or compiler:
+// a filter in single precision, here, decides nearly every triangle and passes on what its error
+// bounds do not vouch for to exact_occlusion.glsl.
 //
-// Edges: Woop, Benthin and Wald 2013, "Watertight ray/triangle intersection". Relative to p, with
-// the light's dominant axis as z, corners are sheared onto z's axis; the three edge functions are
-// differences of two products of the same rounded corners, so neighbours see the same edge with
-// opposite sign. Rounding is monotone: such a difference never has the wrong sign, at worst a false
-// 0, and then products and signs are taken again in double precision, where products of single
-// precision values are exact. An edge belongs to both of its triangles. None of this survives
-// contraction into fused operations, hence `precise`.
+// The filter is that of Woop, Benthin and Wald 2013, "Watertight ray/triangle intersection", with
+// bounds. Relative to p, with the dominant axis of D, the way to the light, as z, corners are
+// sheared onto z's axis. Edge functions u, v, w then say whether the triangle covers the axis, and
+// with them as weights, corners' depths t = z / D.z add up to the depth of the crossing.
 //
-// Depth: whether the plane of the triangle separates p and the light. In single precision from the
-// edge functions when that clears its error bound, else from the corners in double precision.
+// Bounds, with e = 2^-24; capitals are exact. Sums, differences and products are rounded once and
+// quotients are off by 2.5 ulp = 5 e (Vulkan), relatively; on top of that, what is smaller than
+// 2^-126 may be lost. Nothing is decided unless 2^-100 < |D.z| < 2^100, and `size` = `across` +
+// `deepest` exceeds `slack` = 2^-100, so that these losses are below e size for a corner. The room
+// between the sums below and the constants is for products of errors.
+//   Corner: S = X - (D.x / D.z) Z, |D.x| <= |D.z|. Off by e each for X, Z, D.x, D.z, the product and
+//     the difference, 5 e for the quotient: |s - S| <= 2 e |X| + 10 e |Z|, at most 12 e size, and
+//     14 e size with losses. `deepest` is at least every |Z|; `across`, the largest |s.x| plus the
+//     largest |s.y| of all corners, is at least every |s.x| + |s.y|; so `size` is at least every |X|.
+//   Edge: moving two corners by d = 14 e size each changes their product by at most
+//     2 d (across + d); its own roundings add 4 e |s.x| |s.y| <= e across^2. With area =
+//     (across + 16 e size) size, |u - U| <= 29 e area. `error` is 32 e area + slack.
+//   Crossing: |u + v + w| <= 1.5 across^2 <= 1.5 area, off by (3 * 29 + 3) e area. Depths t are off
+//     by 9 e farthest, losses included, farthest = deepest / |D.z| >= |t|. So u t + v t + w t is off
+//     by (3 * 29 + 9 * 1.5 + 3 * 1.5) e area farthest = 105 e area farthest. `near_error` and
+//     `far_error`, for this sum and for its distance from u + v + w, allow 128 e area for each.
+// Overflow makes a bound infinite, and so undecided; far_error < 1e32 keeps the sums finite.
+// The bounds hold only for the operations as they are written, hence `precise`.
 #ifndef SHADOWS_OCCLUSION_GLSL
 #define SHADOWS_OCCLUSION_GLSL
 
@@ -24,9 +40,12 @@ struct Segment {
     vec3 origin;    // the receiver
     vec3 target;    // the light, or, if `directional`, the direction towards it
     vec3 shear;     // x and y per z, and 1 / z, of origin -> light in the order of the axes below
+    float slack;    // 2^-100; infinite if single precision is to decide nothing
     int axis;       // dominant axis: 0, 1, 2
     bool directional;
 };
+
+#include "shadows/exact_occlusion.glsl"
 
 // (x, y, z) such that the dominant axis comes last.
 vec3 axis_last(vec3 v, int axis) { return axis == 0 ? v.yzx : axis == 1 ? v.zxy : v; }
@@ -39,8 +58,10 @@ Segment make_segment(vec3 origin, vec3 target, vec3 towards, bool directional) {
     s.directional = directional;
     s.axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
     const vec3 d = axis_last(towards, s.axis);
-    precise vec3 shear = vec3(d.x / d.z, d.y / d.z, 1.0 / d.z);
+    const bool divides = abs(d.z) > 7.888609e-31 && abs(d.z) < 1.2676506e30;
+    precise vec3 shear = divides ? vec3(d.x / d.z, d.y / d.z, 1.0 / d.z) : vec3(0);
     s.shear = shear;
+    s.slack = divides ? 7.888609e-31 : uintBitsToFloat(0x7f800000u);
     return s;
 }
 
@@ -50,18 +71,6 @@ Segment point_segment(vec3 p, vec3 light) {
 }
 
 Segment directional_segment(vec3 p, vec3 towards) { return make_segment(p, towards, towards, true); }
-
-// Sign of the side of the triangle's plane on which `offset` from corner a lies, in fp64.
-double plane_side(dvec3 normal, dvec3 offset) { return dot(normal, offset); }
-
-bool separates_exact(Segment s, vec3 a, vec3 b, vec3 c) {
-    const dvec3 corner = dvec3(a);
-    const dvec3 normal = cross(dvec3(b) - corner, dvec3(c) - corner);
-    const double here = plane_side(normal, dvec3(s.origin) - corner);
-    const double there =
-        plane_side(normal, s.directional ? dvec3(s.target) : dvec3(s.target) - corner);
-    return (here < 0.0LF && there > 0.0LF) || (here > 0.0LF && there < 0.0LF);
-}
 
 bool occludes(Segment s, vec3 a, vec3 b, vec3 c) {
     precise vec3 ra = axis_last(a - s.origin, s.axis);
@@ -73,34 +82,25 @@ bool occludes(Segment s, vec3 a, vec3 b, vec3 c) {
     precise float u = sc.x * sb.y - sc.y * sb.x;
     precise float v = sa.x * sc.y - sa.y * sc.x;
     precise float w = sb.x * sa.y - sb.y * sa.x;
-    bool below = u < 0 || v < 0 || w < 0, above = u > 0 || v > 0 || w > 0;
-    if (below && above) return false;
-    if (!(abs(u) > 0 && abs(v) > 0 && abs(w) > 0)) {
-        const dvec2 da = dvec2(sa), db = dvec2(sb), dc = dvec2(sc);
-        precise double du = dc.x * db.y - dc.y * db.x;
-        precise double dv = da.x * dc.y - da.y * dc.x;
-        precise double dw = db.x * da.y - db.y * da.x;
-        below = du < 0.0LF || dv < 0.0LF || dw < 0.0LF;
-        above = du > 0.0LF || dv > 0.0LF || dw > 0.0LF;
-        if (below == above) return false;  // outside, or the triangle is seen edge-on
-        return separates_exact(s, a, b, c);
-    }
-    // With barycentric weights u, v, w over their sum, the crossing lies at depth t of the way.
-    // Error: a sheared corner is off by at most 9 * 2^-24 |corner|, which moves a weight by that
-    // times the other corners' reach, 2 (reach.x + reach.y) at most, for each of two corners; the
-    // remaining roundings are smaller. Three weights times the farthest depth: 2^-17 covers all.
-    precise float sum = u + v + w;
-    precise float depth = (u * ra.z + v * rb.z + w * rc.z) * s.shear.z;
     const vec2 reach = max(max(abs(sa), abs(sb)), abs(sc));
-    const float farthest = max(max(abs(ra.z), abs(rb.z)), abs(rc.z)) * abs(s.shear.z);
-    const vec3 size = max(max(abs(ra), abs(rb)), abs(rc));
-    const float bound = (reach.x + reach.y) * max(max(size.x, size.y), size.z) * (farthest + 1.0) *
-                        7.62939453125e-6;
-    const float scaled = sum < 0 ? -depth : depth;
-    const float total = abs(sum);
-    if (scaled > bound && (s.directional || total - scaled > bound)) return true;
-    if (scaled < -bound || (!s.directional && total - scaled < -bound)) return false;
-    return separates_exact(s, a, b, c);
+    precise float across = reach.x + reach.y;
+    precise float deepest = max(max(abs(ra.z), abs(rb.z)), abs(rc.z)) + s.slack;
+    precise float size = across + deepest;
+    precise float error = (across + size * 9.5367431640625e-7) * size * 1.9073486328125e-6 + s.slack;
+    const float least = min(min(u, v), w), most = max(max(u, v), w);
+    if (least < -error && most > error) return false;
+    if (least > error || most < -error) {
+        precise float depth = u * (ra.z * s.shear.z) + v * (rb.z * s.shear.z) + w * (rc.z * s.shear.z);
+        precise float total = abs(u + v + w), scaled = least > 0 ? depth : -depth;
+        precise float beyond = total - scaled;
+        precise float near_error = 4.0 * error * (deepest * abs(s.shear.z)) + s.slack;
+        precise float far_error = near_error + 4.0 * error;
+        if (far_error < 1e32) {
+            if (scaled > near_error && (s.directional || beyond > far_error)) return true;
+            if (scaled < -near_error || (!s.directional && beyond < -far_error)) return false;
+        }
+    }
+    return occludes_exactly(s, a, b, c);
 }
 
 #endif

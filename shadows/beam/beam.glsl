@@ -155,6 +155,7 @@ void beam_test_triangles(uint index, bool used) {
         // The loop of the exact tests counts for all lanes, or not at all.
         if (kLoopsAreCut && subgroupAny(doubtful != 0)) beam_steps += kSlots;
         if (doubtful != 0) test_exactly(index_from, doubtful);
+        if (kLoopsAreCut) beam_steps += subgroupMax(take_exact_loops());
     }
     beam_finished = !subgroupAny((beam_group & ~beam_occluded) != 0);
 }

@@ -4,11 +4,11 @@
 //     bool hit = bvh_occluded(tree, segment, own_primitive, walk);
 //     // walk.end says why the traversal ended; only kEndFinished makes `hit == false` an answer
 //
-// Needs the constant kStackLimit (see query.glsl). Each stack entry is a node's inner
+// Needs the constants kStackLimit and kLoopsAreCut (see query.glsl). Each stack entry is a node's inner
 // children that are still to be visited, so that the stack is no deeper than the tree.
 #ifndef SHADOWS_BVH_ANY_HIT_GLSL
 #define SHADOWS_BVH_ANY_HIT_GLSL
-#include "shadows/occlusion.glsl"
+#include "shadows/bvh/leaf_variants.glsl"
 #include "structures/bvh/wide/wide_node.glsl"
 
 const uint kEndFinished = 0u, kEndStackFull = 1u, kEndStepLimit = 2u;
@@ -107,10 +107,10 @@ bool bvh_occluded(BvhView view, Segment segment, uint own_primitive, inout BvhWa
                     triangle = leaf_first(link);
                     last = triangle + leaf_count(link);
                 }
-                walk.steps -= min(walk.steps, 1u);
+                walk.steps -= min(walk.steps, 1u + (kLoopsAreCut ? take_exact_loops() : 0u));
                 ++walk.triangles;
                 const WideTriangle t = view.triangles.at[triangle++];
-                if (t.primitive != own_primitive && occludes(segment, t.a, t.b, t.c)) {
+                if (t.primitive != own_primitive && leaf_occludes(segment, t.a, t.b, t.c)) {
                     hit = true;
                     break;
                 }

@@ -35,6 +35,7 @@ void main() {
                 push.costs.at[tile_point(tile, k)] = PointCost(beam_nodes, beam_triangles);
         }
     }
+    count_decisions();
     if (kStatistics) exact_tests = subgroupAdd(exact_tests);
     if (lane() == 0) {
         atomicAdd(push.status.at.finished_tiles, finished);

@@ -15,6 +15,7 @@ void main() {
         atomicAnd(push.visible.at[word], ~bit);
     else if (walk.end != kEndFinished)
         atomicAdd(push.status.at.incomplete, 1u);
+    count_decisions();
     if (kStatistics) {
         push.costs.at[point].nodes += walk.nodes;
         push.costs.at[point].triangles += walk.triangles;

@@ -28,6 +28,7 @@ void main() {
         defer(tile, deferred);
         ++finished;
     }
+    count_decisions();
     if (lane() == 0) atomicAdd(push.status.at.finished_tiles, finished);
     if (stack_full > 0) atomicAdd(push.status.at.stack_full, stack_full);
     if (step_limit > 0) atomicAdd(push.status.at.step_limit, step_limit);

@@ -21,6 +21,12 @@ std::vector<Parameter> make_parameters() {
         {"stack", std::int64_t{defaults.stack}, "stack entries of a beam or packet", {}, 1, 32},
         {"list", std::int64_t{defaults.list}, "triangles a beam collects at a time", {}, 64, 4096},
         {"split", std::int64_t{defaults.split}, "triangles before a group is halved", {}, 1},
+        {"leaf",
+         std::string("exact"),
+         "leaf test: exact, or a shortcut to measure its errors",
+         {"exact", "watertight", "moeller_trumbore", "double"}},
+        {"contraction", false, "contract the products of leaf = watertight, as a compiler may"},
+        {"bias", 0.0, "move points towards the light by this fraction of the way", {}, 0, 0.1},
         {"rounds", std::int64_t{defaults.rounds}, "groups a tile may split into", {}, 1, 256},
     };
     all.insert(all.end(), std::begin(query), std::end(query));
@@ -42,6 +48,13 @@ QueryConfig query_config(const Settings& settings) {
     config.stack = static_cast<std::uint32_t>(settings.integer("stack"));
     config.list = static_cast<std::uint32_t>(settings.integer("list"));
     config.split = static_cast<std::uint32_t>(settings.integer("split"));
+    const std::string& leaf = settings.text("leaf");
+    config.leaf = leaf == "watertight"         ? Leaf::watertight
+                  : leaf == "moeller_trumbore" ? Leaf::moeller_trumbore
+                  : leaf == "double"           ? Leaf::double_precision
+                                               : Leaf::exact;
+    config.contraction = settings.boolean("contraction");
+    config.bias = static_cast<float>(settings.real("bias"));
     config.rounds = static_cast<std::uint32_t>(settings.integer("rounds"));
     return config;
 }
@@ -115,6 +128,8 @@ Samples BvhMethod::query(const Points& points, Visibility& visible) {
         samples.push_back({"visited_nodes_max", double(most)});
         samples.push_back({"tested_triangles_mean", triangles / count});
         samples.push_back({"exact_tests_mean", status.exact_tests / count});
+        samples.push_back({"fp64_decisions", double(status.fp64_decisions)});
+        samples.push_back({"exact_decisions", double(status.exact_decisions)});
         samples.push_back({"groups", double(status.groups)});
     }
     return samples;

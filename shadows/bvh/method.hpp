@@ -19,7 +19,7 @@ class BvhMethod final : public Method {
     /// query_ms, incomplete, deferred and, with statistics, visited nodes and tested triangles.
     structures::Samples query(const Points& points, Visibility& visible) override;
     std::vector<float> heat() override;
-    bool claims_exact() const override { return true; }
+    bool claims_exact() const override { return config_.exact(); }
 
   private:
     taskpool::gpu::Device& device_;

@@ -47,11 +47,12 @@ bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout BvhW
                     triangle = leaf_first(link);
                     last = triangle + leaf_count(link);
                 }
-                walk.steps -= min(walk.steps, 1u);
+                const uint loops = kLoopsAreCut ? subgroupMax(take_exact_loops()) : 0u;
+                walk.steps -= min(walk.steps, 1u + loops);
                 ++walk.triangles;
                 const WideTriangle t = push.triangles.at[triangle++];
                 if (has_bit(leaves, slot) && !hit && t.primitive != own_primitive)
-                    hit = occludes(segment, t.a, t.b, t.c);
+                    hit = leaf_occludes(segment, t.a, t.b, t.c);
             }
             if (!subgroupAny(asked && !hit)) break;
         }
@@ -95,6 +96,7 @@ void main() {
         defer(tile, deferred);
         ++finished;
     }
+    count_decisions();
     if (lane() == 0) {
         atomicAdd(push.status.at.finished_tiles, finished);
         atomicAdd(push.status.at.stack_full, stack_full);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "structures/parameters.hpp"
+
 std::span<const taskpool::gpu::Shader> shadows_bvh_shaders();
 
 namespace shadows::bvh {
@@ -45,6 +47,13 @@ const char* shader_of(QueryKind kind) {
 
 Query::Query(taskpool::gpu::Device& device, const QueryConfig& config)
     : device_(device), config_(config) {
+    using structures::SettingError;
+    if (config.leaf != Leaf::exact && config.kind == QueryKind::beam)
+        throw SettingError("leaf",
+                           "'leaf' other than exact needs query = \"packet\" or \"lane\": "
+                           "beams decide most points without a leaf test");
+    if (config.contraction && config.leaf != Leaf::watertight)
+        throw SettingError("contraction", "'contraction' = true needs leaf = \"watertight\"");
     // Every lane may append a whole leaf before the list is looked at.
     config_.list = std::max(config_.list, 8 * device.subgroup_size());
     // A traversal that a driver would cut must end before, on its own account.
@@ -85,7 +94,10 @@ Kernel Query::kernel(bool directional, bool deferred) const {
                    {7, config_.list},
                    {8, config_.rounds},
                    {9, kTilePoints / device_.subgroup_size()},
-                   {10, config_.split}});
+                   {10, config_.split},
+                   {20, static_cast<std::uint32_t>(config_.leaf)},
+                   {21, config_.contraction},
+                   {22, config_.bias}});
 }
 
 const Query::Kernels& Query::kernels(bool directional) {

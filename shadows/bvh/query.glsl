@@ -12,6 +12,8 @@ layout(constant_id = 3) const uint kStackLimit = 64u;     // entries
 layout(constant_id = 4) const uint kStepLimit = 1000000u; // loop iterations of one traversal, or,
 layout(constant_id = 6) const bool kLoopsAreCut = false;  // with this, of the whole invocation
 layout(constant_id = 5) const uint kTilesPerGroup = 0xffffffffu;
+layout(constant_id = 22) const float kBias = 0.0;  // how far points move towards the light: a
+                                                   // fraction of the way, or of the scene's diagonal
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Status { QueryStatus at; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Costs { PointCost at[]; };
@@ -34,8 +36,12 @@ layout(push_constant, scalar) uniform Push {
 const uint kNoTile = 0xffffffffu;
 
 vec3 position_of(uint point) {
-    return vec3(push.points.at[point], push.points.at[push.point_count + point],
-                push.points.at[2 * push.point_count + point]);
+    const vec3 p = vec3(push.points.at[point], push.points.at[push.point_count + point],
+                        push.points.at[2 * push.point_count + point]);
+    if (kBias == 0.0) return p;
+    if (!kDirectional) return p + kBias * (push.light - p);
+    const WideHeader header = push.header.header;
+    return p + kBias * length(header.upper - header.origin) * normalize(push.light);
 }
 uint primitive_of(uint point) {
     return floatBitsToUint(push.points.at[3 * push.point_count + point]);
@@ -60,6 +66,13 @@ uint next_tile(inout uint taken) {
 // Steps that the next traversal may take, after one that left `steps`.
 // A loop runs as long as one lane needs it: the lane with the fewest left decides.
 uint steps_after(uint steps) { return kLoopsAreCut ? subgroupMin(steps) : kStepLimit; }
+
+// Adds this invocation's decisions beyond single precision to the status.
+void count_decisions() {
+    if (!kStatistics || double_decisions == 0) return;
+    atomicAdd(push.status.at.fp64_decisions, double_decisions);
+    atomicAdd(push.status.at.exact_decisions, exact_decisions);
+}
 
 // Leaves a tile's `slots` to the per-point walk, if there are any.
 void defer(uint tile, uint slots) {

@@ -28,6 +28,13 @@
 namespace shadows::bvh {
 
 enum class QueryKind { lane, packet, beam };
+/// The leaf test: the exact one, or a shortcut, for measuring what it costs (leaf_variants.glsl).
+enum class Leaf : std::uint32_t {
+    exact = kLeafExact,
+    watertight = kLeafWatertight,
+    moeller_trumbore = kLeafMoellerTrumbore,
+    double_precision = kLeafDouble
+};
 
 struct QueryConfig {
     QueryKind kind = QueryKind::beam;
@@ -41,11 +48,17 @@ struct QueryConfig {
     // Limits of the per-point walk.
     std::uint32_t point_stack = 32;
     std::uint32_t point_steps = 10'000'000;
+    Leaf leaf = Leaf::exact;   ///< others: not with beams, which decide most points without it
+    bool contraction = false;  ///< watertight: edge functions contracted as a compiler may
+    float bias = 0;  ///< moves points towards the light: fraction of the way (of the diagonal)
+
+    bool exact() const { return leaf == Leaf::exact && bias == 0; }
     bool operator==(const QueryConfig&) const = default;
 };
 
 class Query {
   public:
+    /// Throws structures::SettingError if the leaf test does not go with the rest.
     Query(taskpool::gpu::Device& device, const QueryConfig& config);
 
     /// Allocates for up to `point_count` points.

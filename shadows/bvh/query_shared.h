@@ -29,8 +29,16 @@ struct QueryStatus {
     uint deferred_groups_y;
     uint deferred_groups_z;
     uint next_tile;
+    uint fp64_decisions;   // with statistics: point-triangle pairs that went to double precision,
+    uint exact_decisions;  // and of these, to error-free sums
 };
 GROVE_CONSTANT uint kDeferredOffset = 32u;
+
+// Leaf tests (leaf_variants.glsl).
+GROVE_CONSTANT uint kLeafExact = 0u;
+GROVE_CONSTANT uint kLeafWatertight = 1u;
+GROVE_CONSTANT uint kLeafMoellerTrumbore = 2u;
+GROVE_CONSTANT uint kLeafDouble = 3u;
 
 // With statistics, per point.
 struct PointCost {
@@ -39,7 +47,7 @@ struct PointCost {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(QueryStatus) == 48);
+static_assert(sizeof(QueryStatus) == 56);
 static_assert(offsetof(QueryStatus, deferred_groups_x) == kDeferredOffset);
 static_assert(sizeof(PointCost) == 8);
 }  // namespace shadows::bvh

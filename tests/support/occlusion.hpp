@@ -1,16 +1,25 @@
-// Host mirrors of the exact occlusion test: the same arithmetic as shadows/occlusion.glsl, and an
-// independent one in double precision that says where it is sure.
+// The occlusion test on the host: the shader's filter in the same arithmetic, the truth in numbers
+// that do not round, and an independent test in double precision that says where it is sure.
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "structures/geometry/light.hpp"
 #include "structures/geometry/triangle_mesh.hpp"
 
 namespace tests {
 
-/// shadows/occlusion.glsl, operation for operation.
+enum class Decision { no, yes, unsure };
+/// The part of shadows/occlusion.glsl in single precision, operation for operation.
+Decision occludes_filtered(glm::vec3 p, const structures::geometry::Light& light, glm::vec3 a,
+                           glm::vec3 b, glm::vec3 c);
+
+/// What shadows/occlusion.glsl promises, in numbers of 1024 bits, which hold every intermediate
+/// result for floats of any size.
+bool occludes_exactly(glm::vec3 p, const structures::geometry::Light& light, glm::vec3 a,
+                      glm::vec3 b, glm::vec3 c);
+
+/// The filter's answer, and the exact one where it is unsure.
 bool occludes(glm::vec3 p, const structures::geometry::Light& light, glm::vec3 a, glm::vec3 b,
               glm::vec3 c);
 

@@ -1,13 +1,14 @@
 // The root's first phases: boxes of the triangles, bounds of the scene, and, only if there are
 // degenerate triangles, closing the gaps they leave.
 
-/// Exactly no area: the same arithmetic in the same order as TriangleMesh::degenerate.
+/// Exactly no area or a corner that is not finite, by the same arithmetic as TriangleMesh::degenerate.
 bool degenerate(vec3 a, vec3 b, vec3 c) {
     precise dvec3 u = dvec3(b) - dvec3(a), v = dvec3(c) - dvec3(a);
     precise double x = u.y * v.z - v.y * u.z;
     precise double y = u.z * v.x - v.z * u.x;
     precise double z = u.x * v.y - v.x * u.y;
-    return x == 0.0 && y == 0.0 && z == 0.0;
+    precise double square = x * x + y * y + z * z;
+    return !(square > 0.0LF && square < 1e300LF);
 }
 
 void setup_chunk(uint begin, uint end) {
