@@ -45,15 +45,25 @@ Scenes far_from_origin(Light::Type type) {
 }
 
 Scenes contact_shadow(Light::Type type) {
-    Scene scene = make_scene("", either_light(type, {4, 5, 0.5f}, {-0.8f, -1, -0.1f}));
-    const std::uint32_t floor = add_floor(scene.mesh, {0, 0, 0}, 5);
-    add_closed_box(scene.mesh, {-1, 0, -1}, {1, 1, 1});
-    for (int i = 0; i < 256; ++i) {
-        const double away = 0.002 * std::pow(1.7, i % 8), z = (i / 16 - 7.5) / 10;
-        const double x = i % 16 < 8 ? -1 - away : 1 + away;
-        ask(scene, {x, 0, z}, i % 16 < 8 ? shadowed : lit, floor_at(floor, x, z));
+    Scenes scenes;
+    // Rays that start too far off the floor are in the box already, and leave it through its other
+    // side; over a wall they jump.
+    for (const char* name : {"box", "wall"}) {
+        Scene scene = make_scene(name, either_light(type, {4, 5, 0.5f}, {-0.8f, -1, -0.1f}));
+        const std::uint32_t floor = add_floor(scene.mesh, {0, 0, 0}, 5);
+        const bool box = name[0] == 'b';
+        if (box)
+            add_closed_box(scene.mesh, {-1, 0, -1}, {1, 1, 1});
+        else
+            scenes::add_quad(scene.mesh, {glm::dvec3(0, 0, -1), {0, 0, 1}, {0, 1, 1}, {0, 1, -1}});
+        for (int i = 0; i < 256; ++i) {
+            const double away = 0.002 * std::pow(1.7, i % 8) + (box ? 1 : 0);
+            const double x = i % 16 < 8 ? -away : away, z = (i / 16 - 7.5) / 10;
+            ask(scene, {x, 0, z}, i % 16 < 8 ? shadowed : lit, floor_at(floor, x, z));
+        }
+        scenes.push_back(scene);
     }
-    return {scene};
+    return scenes;
 }
 
 }  // namespace experiments::stability
