@@ -48,6 +48,7 @@ uint beam_tile;
 uint beam_primitives;  // which hashes the primitives of its points have
 uint beam_group;     // slots of the group
 uint beam_occluded;  // slots found occluded, of any group
+uint beam_unsure;    // slots with a triangle that only the caller's exact test can tell
 uint beam_steps;     // loop iterations so far
 uint beam_end;       // why the walk of the group ended
 uint beam_nodes, beam_triangles, beam_exact_tests;
@@ -103,7 +104,9 @@ void test_exactly(uint index, uint slots) {
                 segment = directional_segment(p, beam_light);
             else
                 segment = point_segment(p, beam_light);
-            if (occludes(segment, a, b, c)) beam_occluded |= 1u << k;
+            const int hit = occludes_quickly(segment, a, b, c);
+            if (hit == 1) beam_occluded |= 1u << k;
+            if (hit == kUnsure) beam_unsure |= 1u << k;
             ++beam_exact_tests;
             if (slots == 0) break;
         }
@@ -155,7 +158,6 @@ void beam_test_triangles(uint index, bool used) {
         // The loop of the exact tests counts for all lanes, or not at all.
         if (kLoopsAreCut && subgroupAny(doubtful != 0)) beam_steps += kSlots;
         if (doubtful != 0) test_exactly(index_from, doubtful);
-        if (kLoopsAreCut) beam_steps += subgroupMax(take_exact_loops());
     }
     beam_finished = !subgroupAny((beam_group & ~beam_occluded) != 0);
 }
@@ -166,7 +168,7 @@ TileAnswer answer_tile(uint tile, vec3 origin, float size) {
     beam_tile = tile;
     beam_origin = origin;
     beam_scale = scale_for(size);
-    beam_occluded = beam_steps = beam_nodes = beam_triangles = beam_exact_tests = 0;
+    beam_occluded = beam_unsure = beam_steps = beam_nodes = beam_triangles = beam_exact_tests = 0;
     TileAnswer answer = TileAnswer(0, 0, 0, 0, 0);
     uint todo = 0, primitives = 0;
     [[unroll]] for (uint k = 0; k < kSlots; ++k) {
@@ -216,6 +218,7 @@ TileAnswer answer_tile(uint tile, vec3 origin, float size) {
         }
     }
     answer.occluded = beam_occluded;
+    answer.deferred |= beam_unsure & ~beam_occluded;
     answer.exact_tests = beam_exact_tests;
     return answer;
 }

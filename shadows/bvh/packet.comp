@@ -7,10 +7,13 @@
 #include "shadows/bvh/any_hit.glsl"
 #include "shadows/bvh/subgroup_stack.glsl"
 
-bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout BvhWalk walk) {
+// `unsure` if, without a hit, some triangle's answer is left to the per-point walk.
+bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout BvhWalk walk,
+                     out bool unsure) {
     const WideHeader header = push.header.header;
     const SlabTest test = slab_test(header, segment);
     bool hit = false;
+    unsure = false;
     uint entry = header.node_count > 0 ? 1u : 0u;
     stack_depth = 0;
     while (true) {
@@ -47,12 +50,14 @@ bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout BvhW
                     triangle = leaf_first(link);
                     last = triangle + leaf_count(link);
                 }
-                const uint loops = kLoopsAreCut ? subgroupMax(take_exact_loops()) : 0u;
-                walk.steps -= min(walk.steps, 1u + loops);
+                walk.steps -= min(walk.steps, 1u);
                 ++walk.triangles;
                 const WideTriangle t = push.triangles.at[triangle++];
-                if (has_bit(leaves, slot) && !hit && t.primitive != own_primitive)
-                    hit = leaf_occludes(segment, t.a, t.b, t.c);
+                if (has_bit(leaves, slot) && !hit && t.primitive != own_primitive) {
+                    const int answer = leaf_occludes_quickly(segment, t.a, t.b, t.c);
+                    hit = answer == 1;
+                    unsure = unsure || answer == kUnsure;
+                }
             }
             if (!subgroupAny(asked && !hit)) break;
         }
@@ -83,9 +88,10 @@ void main() {
             const bool asked = primitive != kNoPrimitive;
             BvhWalk walk = bvh_walk_begin(steps);
             if (subgroupAny(asked)) {
-                const bool hit = packet_occluded(segment_of(point), primitive, asked, walk);
+                bool unsure;
+                const bool hit = packet_occluded(segment_of(point), primitive, asked, walk, unsure);
                 if (hit && asked) occluded |= 1u << k;
-                if (!hit && asked && walk.end != kEndFinished) deferred |= 1u << k;
+                if (!hit && asked && (unsure || walk.end != kEndFinished)) deferred |= 1u << k;
                 stack_full += walk.end == kEndStackFull ? 1 : 0;
                 step_limit += walk.end == kEndStepLimit ? 1 : 0;
             }
