@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "experiments/commands/program.hpp"
+#include "experiments/stability/matrix.hpp"
 
 namespace experiments::commands {
 namespace {
@@ -45,7 +46,10 @@ void check_device_index(int index) {
             fmt::format("--device {}: expected 0 to {}; see grove list devices", index, count - 1));
 }
 
-std::string results_table(const std::vector<measure::ResultSummary>& results) {
+std::string results_table(const config::Config& config,
+                          const std::vector<measure::ResultSummary>& results) {
+    if (config.stability)
+        return text_table(stability::text_rows(stability::make_matrix(results)), 100);
     std::vector<std::vector<std::string>> rows{{"scene", "method", "variant"}};
     std::vector<const char*> columns;
     for (const char* name : kColumns)
@@ -101,7 +105,7 @@ int run(const RunRequest& request, const measure::Registries& registries) {
             *device, config, registries,
             {folder_of(request, config), request.resume, request.command_line, cache}, progress);
         if (!outcome.failures.empty()) code = 1;
-        if (!request.quiet) fmt::print("{}\n", results_table(outcome.results));
+        if (!request.quiet) fmt::print("{}\n", results_table(config, outcome.results));
         fmt::print("{}\n", outcome.folder.string());
         std::fflush(stdout);
     }

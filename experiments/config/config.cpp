@@ -10,7 +10,7 @@
 namespace experiments::config {
 namespace {
 
-constexpr const char* kLaterKinds[] = {"optimise", "trace", "collide", "stability"};
+constexpr const char* kLaterKinds[] = {"optimise", "trace", "collide"};
 
 /// The tables of `[[key]]`. Fails if there is none.
 const std::vector<Node>& list_of_tables(Table& root, const std::string& key) {
@@ -111,7 +111,7 @@ nlohmann::json to_json(const Scene& scene) {
 }  // namespace
 
 const std::vector<std::string>& kinds() {
-    static const std::vector<std::string> list = {"shadows", "build"};
+    static const std::vector<std::string> list = {"shadows", "build", "stability"};
     return list;
 }
 
@@ -129,17 +129,27 @@ Config resolve(const Node& root, const std::filesystem::path& file, const Catalo
              "'name' becomes the name of a folder; expected letters, digits, "
              "dashes and underscores");
     config.kind = read_kind(table);
-    config.repeat = int(table.integer("repeat", 1, 100000).value_or(config.repeat));
-    config.warmup = int(table.integer("warmup", 0, 100000).value_or(config.warmup));
     config.seed = table.integer("seed", 0, INT64_MAX).value_or(config.seed);
-    config.truth = table.boolean("truth").value_or(config.truth);
-    config.pictures = table.boolean("pictures").value_or(config.pictures);
-    const auto reference = table.text("reference");
+    std::optional<std::string> reference;
+    if (config.kind == "stability") {
+        config.stability = read_stability(table);
+        config.repeat = 1;
+        config.warmup = 0;
+    } else {
+        config.repeat = int(table.integer("repeat", 1, 100000).value_or(config.repeat));
+        config.warmup = int(table.integer("warmup", 0, 100000).value_or(config.warmup));
+        config.truth = table.boolean("truth").value_or(config.truth);
+        config.pictures = table.boolean("pictures").value_or(config.pictures);
+        reference = table.text("reference");
+    }
     table.finish();
 
-    for (const Node& node : list_of_tables(document, "scene"))
-        read_scenes(node, catalogue, config.seed, config.scenes);
-    const bool shadows = config.kind == "shadows";
+    if (!config.stability)
+        for (const Node& node : list_of_tables(document, "scene"))
+            read_scenes(node, catalogue, config.seed, config.scenes);
+    else if (const Node* scene = document.find("scene"))
+        fail(*scene, "kind 'stability' has scenes of its own; remove [[scene]]");
+    const bool shadows = config.kind != "build";
     for (const Node& node : list_of_tables(document, "method"))
         read_methods(node, shadows ? catalogue.methods : catalogue.structures,
                      shadows ? "shadow method" : "structure", config.methods);
@@ -169,6 +179,7 @@ nlohmann::json to_json(const Config& config) {
                            {"methods", nlohmann::json::array()}};
     json["reference"] =
         config.methods[config.reference].name + " " + config.methods[config.reference].variant;
+    if (config.stability) json["stability"] = to_json(*config.stability);
     for (const Scene& scene : config.scenes) json["scenes"].push_back(to_json(scene));
     for (const Method& method : config.methods)
         json["methods"].push_back({{"name", method.name},

@@ -14,6 +14,7 @@
 
 #include "experiments/config/catalogue.hpp"
 #include "experiments/config/node.hpp"
+#include "experiments/config/stability.hpp"
 #include "experiments/scenes/views_file.hpp"
 #include "structures/geometry/light.hpp"
 
@@ -40,15 +41,16 @@ struct Method {
 struct Config {
     std::filesystem::path file;
     std::string name;
-    std::string kind;  ///< "shadows" or "build"
+    std::string kind;  ///< "shadows", "build" or "stability"
     int repeat = 5;
     int warmup = 1;
     std::int64_t seed = 1;
     bool truth = true;          ///< kind "shadows": judge every answer by shadows/truth
     bool pictures = true;       ///< kind "shadows": draw every answer
     std::size_t reference = 0;  ///< index of the method whose answer the others are compared with
-    std::vector<Scene> scenes;
+    std::vector<Scene> scenes;  ///< none for kind "stability", which has its own
     std::vector<Method> methods;
+    std::optional<Stability> stability{};  ///< for kind "stability" alone
 };
 
 /// Kinds of experiment that this version can run.

@@ -166,7 +166,7 @@ void read_scenes(const Node& node, const Catalogue& catalogue, std::int64_t seed
     if (node.kind != Node::Kind::table)
         fail(node,
              fmt::format("'scene' holds {}; expected a list of tables, [[scene]]", describe(node)));
-    for (const Combination& combination : expand(node)) {
+    for (const Combination& combination : expand(node, "resolution")) {
         const Scene scene = read_scene(combination, catalogue, seed);
         if (scene.views.empty()) {
             scenes.push_back(scene);

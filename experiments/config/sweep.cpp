@@ -7,9 +7,9 @@
 namespace experiments::config {
 namespace {
 
-bool sweeps(const std::string& key, const Node& value) {
+bool sweeps(const std::string& key, const Node& value, std::string_view list_key) {
     if (value.kind != Node::Kind::array) return false;
-    if (key != "resolution") return true;
+    if (key != list_key) return true;
     return !value.items.empty() && value.items.front().kind == Node::Kind::array;
 }
 
@@ -22,11 +22,11 @@ std::string text_of(const Node& value) {
 
 }  // namespace
 
-std::vector<Combination> expand(const Node& table) {
+std::vector<Combination> expand(const Node& table, std::string_view list_key) {
     std::vector<Combination> combinations{{table, {}}};
     for (std::size_t k = 0; k < table.keys.size(); ++k) {
         const Node& list = table.items[k];
-        if (!sweeps(table.keys[k], list)) continue;
+        if (!sweeps(table.keys[k], list, list_key)) continue;
         if (list.items.empty())
             fail(list,
                  fmt::format("'{}' is an empty list; expected at least one value", table.keys[k]));

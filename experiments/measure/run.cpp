@@ -1,6 +1,7 @@
 #include "experiments/measure/run.hpp"
 
 #include "experiments/report/report.hpp"
+#include "experiments/stability/run.hpp"
 
 namespace experiments::measure {
 
@@ -17,7 +18,9 @@ RunOutcome run_experiment(taskpool::gpu::Device& device, const config::Config& c
         SamplesFile samples(folder.samples());
         TruthCache cache(options.cache, [&](const std::string& line) { progress.note(line); });
         Session session{device, config, registries, folder, samples, progress, cache};
-        config.kind == "build" ? run_builds(session) : run_shadows(session);
+        config.stability         ? stability::run_stability(session)
+        : config.kind == "build" ? run_builds(session)
+                                 : run_shadows(session);
         outcome.failures = session.failures;
         outcome.results = summarise(read_samples(folder.samples()));
         write_summary(folder);

@@ -22,6 +22,7 @@ h3 { font-size: 1rem; margin: 1.5rem 0 .5rem; color: var(--soft); font-weight: 6
 p { margin: .25rem 0; } .soft { color: var(--soft); } .bad { color: var(--bad); }
 .scroll { overflow-x: auto; background: var(--card); border: 1px solid var(--line);
   border-radius: .5rem; }
+.scroll + .scroll { margin-top: 1rem; }
 table { border-collapse: collapse; width: 100%; font-size: .9rem; }
 th, td { padding: .4rem .75rem; text-align: right; border-bottom: 1px solid var(--line);
   white-space: nowrap; font-variant-numeric: tabular-nums; }
@@ -108,6 +109,13 @@ std::string png_data_uri(const std::filesystem::path& file) {
     if (!stream) throw std::runtime_error(file.string() + ": cannot be read");
     const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
     return "data:image/png;base64," + base64(bytes);
+}
+
+std::string standalone_svg(const std::string& svg) {
+    const std::size_t inside = svg.find('>') + 1;
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\"" + svg.substr(4, inside - 4) + "<style>" +
+           kStyle + "svg { background: var(--card); } svg.pareto { min-width: 0; }</style>" +
+           svg.substr(inside);
 }
 
 std::string document_head(const std::string& title) {

@@ -13,6 +13,9 @@ std::string escape(std::string_view text);
 /// "data:image/png;base64,..." of a file. Throws std::runtime_error if it cannot be read.
 std::string png_data_uri(const std::filesystem::path& file);
 
+/// The inline drawing `svg` as a file of its own: with the page's style sheet and a background.
+std::string standalone_svg(const std::string& svg);
+
 /// Opening of a document up to and with <body>: style sheet for light and dark, small and large.
 std::string document_head(const std::string& title);
 

@@ -11,6 +11,7 @@
 #include "experiments/report/charts.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/pareto.hpp"
+#include "experiments/report/stability.hpp"
 
 namespace experiments::report {
 namespace {
@@ -129,10 +130,16 @@ std::string charts(const Results& results) {
     return html.empty() ? html : "<div class=\"charts\">\n" + html + "</div>\n";
 }
 
-std::string pareto(const Results& results) {
+/// The plot in the page, and as a file for other pages.
+std::string pareto(const std::filesystem::path& run, const std::string& scene,
+                   const Results& results) {
     const std::vector<Tradeoff> tradeoffs = find_tradeoffs(results);
     if (tradeoffs.size() < 2) return {};
-    return "<div class=\"scroll\">\n" + pareto_chart("Run time against error", tradeoffs) +
+    const std::string svg = pareto_chart(scene + ": run time against error", tradeoffs);
+    std::filesystem::create_directories(run / "images");  // recorded runs may lack it
+    measure::write_text(run / "images" / (measure::file_name(scene) + "-pareto.svg"),
+                        standalone_svg(svg));
+    return "<div class=\"scroll\">\n" + svg +
            "</div>\n<p class=\"soft\">Line: the Pareto front. Filled marks: methods that claim "
            "to be exact. Through each mark: fastest to slowest repetition. Logarithmic; errors "
            "outside the rounding band alone.</p>\n";
@@ -142,6 +149,7 @@ std::string pareto(const Results& results) {
 std::string pictures(const std::filesystem::path& run, const nlohmann::json& manifest,
                      const std::string& scene) {
     std::string first, rest;
+    bool any_errors = false;
     const std::string reference = manifest.at("config").value("reference", "");
     for (const auto& image : manifest.value("images", nlohmann::json::array())) {
         const std::string kind = image.at("kind"), method = image.at("method"),
@@ -149,13 +157,18 @@ std::string pictures(const std::filesystem::path& run, const nlohmann::json& man
         const bool common = kind == "shaded" || kind == "visibility";
         if (image.at("scene") != scene || !std::filesystem::exists(run / file)) continue;
         if (common && label(method, variant) != reference) continue;
+        any_errors = any_errors || kind == "errors";
         (common ? first : rest) += fmt::format(
             "<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}: {} {}</figcaption></figure>\n",
             png_data_uri(run / file), escape(fmt::format("{} of {}", kind, scene)), escape(kind),
             escape(method), escape(variant));
     }
     if (first.empty() && rest.empty()) return {};
-    return "<h3>Pictures</h3>\n<div class=\"pictures\">\n" + first + rest + "</div>\n";
+    const std::string legend =
+        "<p class=\"soft\">errors: red falsely lit, blue falsely shadowed, "
+        "yellow wrong within the rounding band; few are drawn as dots.</p>\n";
+    return "<h3>Pictures</h3>\n" + (any_errors ? legend : std::string()) +
+           "<div class=\"pictures\">\n" + first + rest + "</div>\n";
 }
 
 std::string facts_table(const std::vector<std::pair<std::string, std::string>>& facts) {
@@ -215,7 +228,7 @@ std::string scene_section(const std::filesystem::path& run, const nlohmann::json
         html += fmt::format("<p class=\"soft\">{}</p>\n",
                             escape(fmt::format("{}", fmt::join(parts, " · "))));
     }
-    if (!results.empty()) html += table(results) + pareto(results) + charts(results);
+    if (!results.empty()) html += table(results) + pareto(run, scene, results) + charts(results);
     return html + pictures(run, manifest, scene) + "</section>\n";
 }
 
@@ -229,19 +242,26 @@ void write_report(const std::filesystem::path& run) {
         const auto& config = manifest.at("config");
         const std::string name = config.at("name");
         html = document_head(name + " – Grove");
-        html += fmt::format(
-            "<h1>{}</h1>\n<p class=\"soft\">{} experiment on {} · {} repetitions, "
-            "{} warm-up · {}</p>\n",
-            escape(name), escape(config.at("kind").get<std::string>()),
-            escape(text_of(manifest.at("device"), "name")), config.at("repeat").dump(),
-            config.at("warmup").dump(), escape(text_of(manifest.at("sessions").front(), "start")));
-        html +=
-            "<p class=\"soft\">Medians; below them, and as thin lines in the charts, minimum and "
-            "maximum; thick lines: confidence interval of the median. Green: best of its "
-            "column.</p>\n";
+        const bool stability = config.at("kind") == "stability";
+        const std::string repetitions =
+            fmt::format("{} repetitions, {} warm-up · ", config.at("repeat").dump(),
+                        config.at("warmup").dump());
+        html += fmt::format("<h1>{}</h1>\n<p class=\"soft\">{} experiment on {} · {}{}</p>\n",
+                            escape(name), escape(config.at("kind").get<std::string>()),
+                            escape(text_of(manifest.at("device"), "name")),
+                            stability ? "" : repetitions,
+                            escape(text_of(manifest.at("sessions").front(), "start")));
+        if (!stability)
+            html +=
+                "<p class=\"soft\">Medians; below them, and as thin lines in the charts, minimum "
+                "and maximum; thick lines: confidence interval of the median. Green: best of its "
+                "column.</p>\n";
         html += failures(manifest);
-        for (const std::string& scene : scene_names(results))
-            html += scene_section(run, manifest, results, scene);
+        if (stability)
+            html += stability_section(results);
+        else
+            for (const std::string& scene : scene_names(results))
+                html += scene_section(run, manifest, results, scene);
         html += provenance(manifest) + "</body>\n</html>\n";
     } catch (const nlohmann::json::exception& error) {
         throw std::runtime_error((run / "manifest.json").string() +

@@ -5,9 +5,9 @@
 
 namespace experiments::report {
 
-/// (Re)makes report.html in a run's folder from samples.csv, manifest.json and images/, and
-/// pareto.csv if answers were judged. Throws std::runtime_error naming the file that is missing or
-/// unreadable.
+/// (Re)makes report.html in a run's folder from samples.csv, manifest.json and images/; and, if
+/// answers were judged, pareto.csv and a plot of run time against error in images/. Throws
+/// std::runtime_error naming the file that is missing or unreadable.
 void write_report(const std::filesystem::path& run);
 
 }  // namespace experiments::report

@@ -11,10 +11,12 @@
 // A tile's points fall into groups (group.glsl): similar directions from the light. The structure's
 // walk finds triangles that may occlude a group; those are culled against the beam, then tested
 // against the points (candidate.glsl). Everything conservative only decides what to skip; points it
-// cannot decide go to the exact test. A walk that runs out of stack, steps or rounds defers its
-// points to the caller, who must answer them another way.
+// cannot decide go to the exact test. Beams pay while many points ask about few triangles: a group
+// that meets too many for its points, or whose walk runs out of stack or steps, is left to the
+// caller, who must answer its points another way.
 //
-// The includer defines kDirectional, kLoopsAreCut, kStepLimit, kRoundLimit, kSplitTriangles, and includes device.glsl first.
+// The includer defines kDirectional, kLoopsAreCut, kStepLimit, kTrianglesPerPoint, and includes
+// device.glsl first.
 #ifndef SHADOWS_BEAM_BEAM_GLSL
 #define SHADOWS_BEAM_BEAM_GLSL
 #include "shadows/occlusion.glsl"
@@ -32,13 +34,14 @@ void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint prim
 // Walks the structure with `beam`; stops early when group_finished() or out of steps.
 void beam_walk();
 
-const uint kBeamFinished = 0u, kBeamStackFull = 1u, kBeamStepLimit = 2u, kBeamRoundLimit = 3u;
-const uint kBeamSplit = 4u;  // not an end: the group is too expensive as a whole
+const uint kBeamFinished = 0u, kBeamStackFull = 1u, kBeamStepLimit = 2u, kBeamDense = 3u;
+// What setting up a group costs, in steps: visits of a node, batches of triangles, candidates.
+const uint kGroupSteps = 8u;
 
 struct TileAnswer {
     uint occluded;  // slots
-    uint deferred;  // slots without an answer yet
-    uint ends;      // bit set of why groups were given up: 1 << kBeam...
+    uint left;      // slots without an answer
+    uint stack_full;  // groups given up because the stack was full
     uint groups;
     uint exact_tests;
 };
@@ -48,14 +51,14 @@ uint beam_tile;
 uint beam_primitives;  // which hashes the primitives of its points have
 uint beam_group;     // slots of the group
 uint beam_occluded;  // slots found occluded, of any group
-uint beam_unsure;    // slots with a triangle that only the caller's exact test can tell
+uint beam_unsure;    // slots with a triangle that double precision cannot tell
 uint beam_steps;     // loop iterations so far
+uint beam_live;      // sections with slots of the group that are not yet occluded
 uint beam_end;       // why the walk of the group ended
 uint beam_nodes, beam_triangles, beam_exact_tests;
 uint beam_recent = 0xffffffffu;  // a triangle that has occluded a whole group, one per lane
 uint beam_recent_count = 0;
-uint beam_halvings;         // of the tile's groups
-uint beam_group_triangles;  // tested by this group
+uint beam_allowance;  // triangles that the group may still meet
 bool beam_finished;  // every point of the group is occluded
 
 bool group_finished() { return beam_finished; }
@@ -69,47 +72,33 @@ bool beam_step(uint count) {
     return beam_end == kBeamFinished;
 }
 
-// Notes triangles about to be tested; false if the group had better be split first.
-bool beam_count_triangles(uint count) {
+// Triangles about to be tested: false if they are more than the group may still meet.
+bool beam_take_triangles(uint count) {
     beam_triangles += count;
-    beam_group_triangles += count;
-    if (beam_group_triangles > kSplitTriangles && beam_halvings < kMaxHalvings) {
-        beam_end = kBeamSplit;
-        return false;
-    }
-    return true;
+    if (count > beam_allowance) beam_end = kBeamDense;
+    beam_allowance -= min(count, beam_allowance);
+    return beam_end == kBeamFinished;
 }
 
-// Exact test of one triangle against the lane's `slots`.
+// Exact test of one triangle against the lane's `slots`, not 0.
 void test_exactly(uint index, uint slots) {
     vec3 a, b, c;
     uint primitive;
     beam_triangle(index, a, b, c, primitive);
-    // Not in directions outside of the triangle's own rectangle: bounds on the edge functions grow
-    // with the beam and are poor for triangles much smaller than it.
-    vec2 lower, upper;
-    footprint(a, b, c, lower, upper);
-    [[unroll]] for (uint k = 0; k < kSlots; ++k) {
-        if (point_u[k] < lower.x || point_u[k] > upper.x ||
-            point_v[k] < lower.y || point_v[k] > upper.y)
-            slots &= ~(1u << k);
-    }
-    if (slots != 0) {
-        while (true) {
-            const uint k = findLSB(slots);
-            slots &= slots - 1u;
-            const vec3 p = beam_point(tile_point(beam_tile, k));
-            Segment segment;
-            if (kDirectional)
-                segment = directional_segment(p, beam_light);
-            else
-                segment = point_segment(p, beam_light);
-            const int hit = occludes_quickly(segment, a, b, c);
-            if (hit == 1) beam_occluded |= 1u << k;
-            if (hit == kUnsure) beam_unsure |= 1u << k;
-            ++beam_exact_tests;
-            if (slots == 0) break;
-        }
+    while (true) {
+        const uint k = findLSB(slots);
+        slots &= slots - 1u;
+        const vec3 p = beam_point(tile_point(beam_tile, k));
+        Segment segment;
+        if (kDirectional)
+            segment = directional_segment(p, beam_light);
+        else
+            segment = point_segment(p, beam_light);
+        const int hit = occludes_quickly(segment, a, b, c);
+        if (hit == 1) beam_occluded |= 1u << k;
+        if (hit == kUnsure) beam_unsure |= 1u << k;
+        ++beam_exact_tests;
+        if (slots == 0) break;
     }
 }
 
@@ -121,7 +110,7 @@ void beam_test_triangles(uint index, bool used) {
         vec3 a, b, c;
         uint primitive;
         beam_triangle(index, a, b, c, primitive);
-        verdict = classify(a, b, c, mine);
+        verdict = classify(a, b, c, beam_live, mine);
         const bool receives = (primitive_bit(primitive) & beam_primitives) != 0;
         mine.receiver = receives ? primitive : kNoPrimitive;
         if (verdict == kCovers && receives) verdict = kMeets;
@@ -159,7 +148,8 @@ void beam_test_triangles(uint index, bool used) {
         if (kLoopsAreCut && subgroupAny(doubtful != 0)) beam_steps += kSlots;
         if (doubtful != 0) test_exactly(index_from, doubtful);
     }
-    beam_finished = !subgroupAny((beam_group & ~beam_occluded) != 0);
+    beam_live = live_sections(beam_group & ~beam_occluded);
+    beam_finished = beam_live == 0;
 }
 
 // Answers one tile. `origin` is the light, or, for a directional light, a point near the scene;
@@ -181,44 +171,37 @@ TileAnswer answer_tile(uint tile, vec3 origin, float size) {
             if (kDirectional || max(max(size.x, size.y), size.z) > kTinyDistance)
                 todo |= 1u << k;
             else
-                answer.deferred |= 1u << k;
+                answer.left |= 1u << k;
         }
     }
     beam_primitives = subgroupOr(primitives);
-    float limit = kHuge;  // length of a group's sides
-    beam_halvings = 0;
     // Guarded: drivers may run the body of a loop that has nothing to do.
     if (subgroupAny(todo != 0)) {
         while (true) {
-            if (answer.groups == kRoundLimit) {
-                answer.deferred |= todo;
-                answer.ends |= 1u << kBeamRoundLimit;
-                break;
-            }
             beam_end = kBeamFinished;
             beam_finished = false;
-            beam_group = take_group(todo, beam_light, limit);
+            beam_group = take_group(todo, beam_light);
             todo &= ~beam_group;
+            beam_live = live_sections(beam_group);
             ++answer.groups;
-            beam_group_triangles = 0;
             // What covered a tile lately may well cover this one.
             if (beam_recent_count > 0) beam_test_triangles(beam_recent, beam_recent != 0xffffffffu);
-            if (!beam_finished) beam_walk();
-            if (beam_end == kBeamSplit) {
-                // Thinner beams meet fewer triangles, and fewer points ask about each.
-                const vec2 extent = beam.upper - beam.lower;
-                limit = 0.25 * max(extent.x, extent.y);
-                ++beam_halvings;
-                todo |= beam_group & ~beam_occluded;
-            } else if (beam_end != kBeamFinished) {
-                answer.deferred |= beam_group & ~beam_occluded;
-                answer.ends |= 1u << beam_end;
+            beam_allowance =
+                kTrianglesPerPoint * subgroupAdd(bitCount(beam_group & ~beam_occluded));
+            if (beam_step(kGroupSteps) && !beam_finished) beam_walk();
+            if (beam_end != kBeamFinished) {
+                answer.left |= beam_group & ~beam_occluded;
+                answer.stack_full += beam_end == kBeamStackFull ? 1 : 0;
             }
             if (!subgroupAny(todo != 0)) break;
+            if (beam_steps > kStepLimit) {
+                answer.left |= todo;
+                break;
+            }
         }
     }
     answer.occluded = beam_occluded;
-    answer.deferred |= beam_unsure & ~beam_occluded;
+    answer.left |= beam_unsure & ~beam_occluded;
     answer.exact_tests = beam_exact_tests;
     return answer;
 }

@@ -105,7 +105,7 @@ void footprint(vec3 a, vec3 b, vec3 c, out vec2 lower, out vec2 upper) {
 
 // What the triangle is to the whole beam: kMiss, kMeets, or kCovers if it certainly occludes all
 // points.
-uint classify(vec3 a, vec3 b, vec3 c, out Candidate candidate) {
+uint classify(vec3 a, vec3 b, vec3 c, uint live, out Candidate candidate) {
     const vec3 ra = from_world(a), rb = from_world(b), rc = from_world(c);
     const vec3 ab = to_beam((b - a) * beam_scale), bc = to_beam((c - b) * beam_scale),
                ca = to_beam((a - c) * beam_scale);
@@ -176,12 +176,17 @@ uint classify(vec3 a, vec3 b, vec3 c, out Candidate candidate) {
         const float plane_least = low.x + low.y + low.z + constant;
         if (any(lessThan(edge_most, -error)) || plane_most < -plane_error) return kMiss;
         covers = all(greaterThan(edge_least, error)) && plane_least > plane_error;
+        vec2 lower, upper;
+        footprint(a, b, c, lower, upper);
         candidate.sections = 0;
         [[unroll]] for (uint s = 0; s < kSections; ++s) {
+            if (any(lessThan(upper, section_lower[s])) || any(greaterThan(lower, section_upper[s])))
+                continue;
             if (!(most_of(candidate.edge_ab, s) < -error.x || most_of(candidate.edge_bc, s) < -error.y ||
                   most_of(candidate.edge_ca, s) < -error.z))
-                candidate.sections |= 1u << s;
+                candidate.sections |= 1u << (s * kSectionSlots);
         }
+        candidate.sections &= live;
         if (candidate.sections == 0) return kMiss;
         if (!kDirectional) plane_error *= beam.key.y;
         plane *= certainty(plane_error);
@@ -190,7 +195,7 @@ uint classify(vec3 a, vec3 b, vec3 c, out Candidate candidate) {
         // the whole beam is on different sides of two edges.
         if (any(lessThan(edge_most, -error)) && any(greaterThan(edge_least, error))) return kMiss;
         plane = vec4(0);
-        candidate.sections = 0xffu;
+        candidate.sections = live;
         candidate.edge_ab = candidate.edge_bc = candidate.edge_ca = vec3(0);
     }
     candidate.edge_ab *= certainty(error.x);
@@ -215,8 +220,9 @@ Candidate broadcast(Candidate candidate, uint from) {
 void test_points(Candidate c, out uint hit, out uint doubtful) {
     hit = 0;
     doubtful = 0;
+    uint own = 0;
     [[unroll]] for (uint s = 0; s < kSections; ++s) {
-        if (!has_bit(c.sections, s)) continue;
+        if (!has_bit(c.sections, s * kSectionSlots)) continue;
         [[unroll]] for (uint i = 0; i < kSectionSlots; ++i) {
             const uint k = s * kSectionSlots + i;
             const float u = point_u[k], v = point_v[k];
@@ -228,16 +234,11 @@ void test_points(Candidate c, out uint hit, out uint doubtful) {
             const float least = min(min(ab, bc), min(ca, side));
             hit |= least > 1.0 ? 1u << k : 0u;
             doubtful |= least < -1.0 ? 0u : 1u << k;
+            own |= point_primitive[k] == c.receiver ? 1u << k : 0u;
         }
     }
-    doubtful &= ~hit;
-    if (c.receiver != kNoPrimitive) {
-        uint own = 0;
-        [[unroll]] for (uint k = 0; k < kSlots; ++k)
-            own |= point_primitive[k] == c.receiver ? 1u << k : 0u;
-        hit &= ~own;
-        doubtful &= ~own;
-    }
+    hit &= ~own;
+    doubtful &= ~(hit | own);
 }
 
 #endif

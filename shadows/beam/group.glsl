@@ -29,6 +29,14 @@ float scale_for(float size) {
 // are tested against the runs that they can meet.
 const uint kSections = kSlots < 8 ? kSlots : 8;
 const uint kSectionSlots = kSlots / kSections;
+
+// Sections with some of `slots` in any lane: the bit of a section is that of its first slot.
+uint live_sections(uint slots) {
+    uint first = 0;
+    [[unroll]] for (uint s = 0; s < kSections; ++s) first |= 1u << (s * kSectionSlots);
+    [[unroll]] for (uint i = 1; i < kSectionSlots; i *= 2) slots |= slots >> i;
+    return subgroupOr(slots & first);
+}
 vec2 section_lower[kSections], section_upper[kSections];
 
 struct Beam {
@@ -58,11 +66,8 @@ const float kHuge = 3.0e38;
 const float kTinyDistance = 1e-30;
 // An axis is good for all points of a group if none is further off it than this factor.
 const float kWidestSlope = 4.0;
-// A group splits at an empty interval of this share of its extent, at most this often.
-const float kGapShare = 0.2;
-const uint kMaxGapSplits = 4u;
-// A group whose beam meets too many triangles is halved, at most this often in each direction.
-const uint kMaxHalvings = 4u;
+// A group splits at an empty interval of this share of its extent.
+const float kGapShare = 0.3;
 
 void bounds_of(uint bits, out vec3 lower, out vec3 upper) {
     lower = vec3(kHuge);
@@ -146,24 +151,23 @@ void rectangles_of_sections(uint bits, vec2 slack) {
 
 // Cuts the group where its directions leave the widest gap around the middle, if it is wide:
 // depth edges otherwise make one fat beam of two thin ones. Keeps the lower side.
-uint split_at_gaps(uint bits) {
+uint split_at_gap(uint bits) {
     rectangle_of(bits);
-    for (uint split = 0; split < kMaxGapSplits; ++split) {
-        const vec2 middle = 0.5 * beam.lower + 0.5 * beam.upper;
-        vec2 below = beam.lower, above = beam.upper;
-        [[unroll]] for (uint k = 0; k < kSlots; ++k) {
-            const vec2 q = vec2(point_u[k], point_v[k]);
-            const bool in_group = has_bit(bits, k);
-            below = max(below, mix(beam.lower, q, bvec2(in_group && q.x < middle.x,
-                                                        in_group && q.y < middle.y)));
-            above = min(above, mix(beam.upper, q, bvec2(in_group && q.x >= middle.x,
-                                                        in_group && q.y >= middle.y)));
-        }
-        below = reduce_max(below);
-        above = reduce_min(above);
-        const vec2 gap = above - below, extent = beam.upper - beam.lower;
-        const bool by_u = gap.x * extent.y >= gap.y * extent.x;
-        if (!(by_u ? gap.x > kGapShare * extent.x : gap.y > kGapShare * extent.y)) break;
+    const vec2 middle = 0.5 * beam.lower + 0.5 * beam.upper;
+    vec2 below = beam.lower, above = beam.upper;
+    [[unroll]] for (uint k = 0; k < kSlots; ++k) {
+        const vec2 q = vec2(point_u[k], point_v[k]);
+        const bool in_group = has_bit(bits, k);
+        below = max(below, mix(beam.lower, q, bvec2(in_group && q.x < middle.x,
+                                                    in_group && q.y < middle.y)));
+        above = min(above, mix(beam.upper, q, bvec2(in_group && q.x >= middle.x,
+                                                    in_group && q.y >= middle.y)));
+    }
+    below = reduce_max(below);
+    above = reduce_min(above);
+    const vec2 gap = above - below, extent = beam.upper - beam.lower;
+    const bool by_u = gap.x * extent.y >= gap.y * extent.x;
+    if (by_u ? gap.x > kGapShare * extent.x : gap.y > kGapShare * extent.y) {
         uint kept = 0;
         [[unroll]] for (uint k = 0; k < kSlots; ++k)
             if (by_u ? point_u[k] < middle.x : point_v[k] < middle.y) kept |= 1u << k;
@@ -173,25 +177,8 @@ uint split_at_gaps(uint bits) {
     return bits;
 }
 
-// Cuts a group at its middle until no side is longer than `limit`.
-uint split_to_limit(uint bits, float limit) {
-    for (uint split = 0; split < 2 * kMaxHalvings; ++split) {
-        const vec2 extent = beam.upper - beam.lower;
-        if (max(extent.x, extent.y) <= limit) break;
-        const vec2 middle = 0.5 * beam.lower + 0.5 * beam.upper;
-        const bool by_u = extent.x >= extent.y;
-        uint kept = 0;
-        [[unroll]] for (uint k = 0; k < kSlots; ++k)
-            if (by_u ? point_u[k] <= middle.x : point_v[k] <= middle.y) kept |= 1u << k;
-        bits &= kept;
-        rectangle_of(bits);
-    }
-    return bits;
-}
-
-// Takes the next group out of `todo` (not 0 in some lane) and sets up its beam, no side of which is
-// longer than `limit`.
-uint take_group(uint todo, vec3 towards_light, float limit) {
+// Takes the next group out of `todo` (not 0 in some lane) and sets up its beam.
+uint take_group(uint todo, vec3 towards_light) {
     uint bits = todo;
     vec3 lower, upper;
     bounds_of(bits, lower, upper);
@@ -205,8 +192,7 @@ uint take_group(uint todo, vec3 towards_light, float limit) {
         bits = choose_axis(bits, lower, upper);
     }
     project();
-    bits = split_at_gaps(bits);
-    if (limit < kHuge) bits = split_to_limit(bits, limit);
+    bits = split_at_gap(bits);
     if (subgroupAny(bits != todo)) bounds_of(bits, lower, upper);
     const vec3 farthest = max(abs(lower), abs(upper));
     beam.reach = farthest.x + farthest.y + farthest.z;

@@ -20,14 +20,18 @@ std::vector<Parameter> make_parameters() {
         {"statistics", false, "count nodes and triangles per point (slower)"},
         {"stack", std::int64_t{defaults.stack}, "stack entries of a beam or packet", {}, 1, 32},
         {"list", std::int64_t{defaults.list}, "triangles a beam collects at a time", {}, 64, 4096},
-        {"split", std::int64_t{defaults.split}, "triangles before a group is halved", {}, 1},
+        {"density",
+         std::int64_t{defaults.density},
+         "triangles per point a beam may meet",
+         {},
+         0,
+         1e6},
         {"leaf",
          std::string("exact"),
          "leaf test: exact, or a shortcut to measure its errors",
          {"exact", "watertight", "moeller_trumbore", "double"}},
         {"contraction", false, "contract the products of leaf = watertight, as a compiler may"},
         {"bias", 0.0, "move points towards the light by this fraction of the way", {}, 0, 0.1},
-        {"rounds", std::int64_t{defaults.rounds}, "groups a tile may split into", {}, 1, 256},
     };
     all.insert(all.end(), std::begin(query), std::end(query));
     return all;
@@ -47,7 +51,7 @@ QueryConfig query_config(const Settings& settings) {
     config.statistics = settings.boolean("statistics");
     config.stack = static_cast<std::uint32_t>(settings.integer("stack"));
     config.list = static_cast<std::uint32_t>(settings.integer("list"));
-    config.split = static_cast<std::uint32_t>(settings.integer("split"));
+    config.density = static_cast<std::uint32_t>(settings.integer("density"));
     const std::string& leaf = settings.text("leaf");
     config.leaf = leaf == "watertight"         ? Leaf::watertight
                   : leaf == "moeller_trumbore" ? Leaf::moeller_trumbore
@@ -55,7 +59,6 @@ QueryConfig query_config(const Settings& settings) {
                                                : Leaf::exact;
     config.contraction = settings.boolean("contraction");
     config.bias = static_cast<float>(settings.real("bias"));
-    config.rounds = static_cast<std::uint32_t>(settings.integer("rounds"));
     return config;
 }
 
@@ -131,6 +134,7 @@ Samples BvhMethod::query(const Points& points, Visibility& visible) {
         samples.push_back({"fp64_decisions", double(status.fp64_decisions)});
         samples.push_back({"exact_decisions", double(status.exact_decisions)});
         samples.push_back({"groups", double(status.groups)});
+        samples.push_back({"packet_tiles", double(status.packet_tiles)});
     }
     return samples;
 }

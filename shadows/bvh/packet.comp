@@ -1,105 +1,22 @@
-// Shadow query, one packet per subgroup: its segments, neighbours on the screen, share one stack
-// and walk together wherever one of them has to go. Lanes load a node's children once and pass
-// them round; a packet that runs out of stack or steps is left to the per-point walk.
+// Shadow query, one packet per subgroup and slot.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shadows/bvh/query.glsl"
-#include "shadows/bvh/any_hit.glsl"
-#include "shadows/bvh/subgroup_stack.glsl"
-
-// `unsure` if, without a hit, some triangle's answer is left to the per-point walk.
-bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout BvhWalk walk,
-                     out bool unsure) {
-    const WideHeader header = push.header.header;
-    const SlabTest test = slab_test(header, segment);
-    bool hit = false;
-    unsure = false;
-    uint entry = header.node_count > 0 ? 1u : 0u;
-    stack_depth = 0;
-    while (true) {
-        if ((entry & 0xffu) == 0) {
-            if (stack_depth == 0) break;
-            entry = stack_pop();
-        }
-        if (walk.steps == 0) {
-            walk.end = kEndStepLimit;
-            break;
-        }
-        --walk.steps;
-        const uint node = (entry >> 8) + findLSB(entry & 0xffu);
-        entry &= entry - 1u;
-        const uvec4 loaded = push.nodes.at[node * kWidth + lane() % kWidth];
-        uint inner = 0, leaves = 0;
-        [[unroll]] for (uint slot = 0; slot < kWidth; ++slot) {
-            const uvec4 child = subgroupShuffle(loaded, slot);
-            const uint bit = asked && !hit && meets(test, child) ? 1u << slot : 0u;
-            inner |= is_leaf(child.w) ? 0u : bit;
-            leaves |= is_leaf(child.w) ? bit : 0u;
-        }
-        ++walk.nodes;
-        const uint any_lane = subgroupOr(inner << kWidth | leaves);
-        uint any_leaf = any_lane & 0xffu;
-        if (any_leaf != 0) {
-            uint triangle = 0, last = 0, slot = 0;
-            while (true) {
-                if (triangle == last) {
-                    if (any_leaf == 0) break;
-                    slot = findLSB(any_leaf);
-                    any_leaf &= any_leaf - 1u;
-                    const uint link = subgroupShuffle(loaded.w, slot);
-                    triangle = leaf_first(link);
-                    last = triangle + leaf_count(link);
-                }
-                walk.steps -= min(walk.steps, 1u);
-                ++walk.triangles;
-                const WideTriangle t = push.triangles.at[triangle++];
-                if (has_bit(leaves, slot) && !hit && t.primitive != own_primitive) {
-                    const int answer = leaf_occludes_quickly(segment, t.a, t.b, t.c);
-                    hit = answer == 1;
-                    unsure = unsure || answer == kUnsure;
-                }
-            }
-            if (!subgroupAny(asked && !hit)) break;
-        }
-        const uint any_inner = any_lane >> kWidth;
-        if (any_inner != 0) {
-            if ((entry & 0xffu) != 0) {
-                if (stack_depth >= stack_capacity()) {
-                    walk.end = kEndStackFull;
-                    break;
-                }
-                stack_push(entry);
-            }
-            entry = subgroupShuffle(loaded.w, 0) << 8 | any_inner;
-        }
-    }
-    return hit;
-}
+#include "shadows/bvh/packet.glsl"
 
 void main() {
     uint taken = 0, stack_full = 0, step_limit = 0, finished = 0, steps = kStepLimit;
     while (true) {
         const uint tile = next_tile(taken);
         if (tile == kNoTile) break;
-        uint occluded = 0, deferred = 0;
-        for (uint k = 0; k < kSlots; ++k) {
-            const uint point = tile_point(tile, k);
-            const uint primitive = primitive_of(point);
-            const bool asked = primitive != kNoPrimitive;
-            BvhWalk walk = bvh_walk_begin(steps);
-            if (subgroupAny(asked)) {
-                bool unsure;
-                const bool hit = packet_occluded(segment_of(point), primitive, asked, walk, unsure);
-                if (hit && asked) occluded |= 1u << k;
-                if (!hit && asked && (unsure || walk.end != kEndFinished)) deferred |= 1u << k;
-                stack_full += walk.end == kEndStackFull ? 1 : 0;
-                step_limit += walk.end == kEndStepLimit ? 1 : 0;
-            }
-            steps = steps_after(walk.steps);
-            if (kStatistics) push.costs.at[point] = PointCost(walk.nodes, walk.triangles);
-        }
-        store_tile(push.visible, tile, ~occluded);
-        defer(tile, deferred);
+        uint slots = 0;
+        [[unroll]] for (uint k = 0; k < kSlots; ++k)
+            if (primitive_of(tile_point(tile, k)) != kNoPrimitive) slots |= 1u << k;
+        const PacketAnswer answer = answer_packets(tile, slots, steps, PointCost(0, 0));
+        store_tile(push.visible, tile, ~answer.occluded);
+        defer(tile, answer.deferred);
+        stack_full += answer.stack_full;
+        step_limit += answer.step_limit;
         ++finished;
     }
     count_decisions();

@@ -92,9 +92,8 @@ Kernel Query::kernel(bool directional, bool deferred) const {
                    {5, tiles},
                    {6, device_.info().loop_limit > 0},
                    {7, config_.list},
-                   {8, config_.rounds},
+                   {8, config_.density},
                    {9, kTilePoints / device_.subgroup_size()},
-                   {10, config_.split},
                    {20, static_cast<std::uint32_t>(config_.leaf)},
                    {21, config_.contraction},
                    {22, config_.bias}});

@@ -11,8 +11,9 @@
 //   lane    one segment per lane
 //   packet  a subgroup's segments share one stack
 //   beam    a subgroup owns a tile of 16 x 16 points and walks the tree with the tile's frustum
-// What packet and beam cannot finish within their limits is left to a per-point walk, recorded
-// behind them as an indirect dispatch; nothing is dropped, and the status counts what happened.
+// Points of beams that meet too many triangles go on in packets, in the same kernel. What packets
+// cannot finish within their limits is left to a per-point walk, recorded behind them as an
+// indirect dispatch; nothing is dropped, and the status counts what happened.
 #pragma once
 
 #include <array>
@@ -41,10 +42,9 @@ struct QueryConfig {
     bool statistics = false;
     // Limits of packet and beam; small ones force the per-point walk.
     std::uint32_t stack = 32;         ///< entries of the traversal stack
-    std::uint32_t list = 256;         ///< triangles collected before they are processed
+    std::uint32_t list = 1024;        ///< triangles collected before they are processed
     std::uint32_t steps = 1'000'000;  ///< loop iterations of one traversal
-    std::uint32_t rounds = 64;        ///< groups that the points of one tile may fall into
-    std::uint32_t split = 384;        ///< triangles a group may meet before it is halved
+    std::uint32_t density = 3;        ///< triangles per point that a beam may meet
     // Limits of the per-point walk.
     std::uint32_t point_stack = 32;
     std::uint32_t point_steps = 10'000'000;

@@ -1,6 +1,8 @@
 // A traversal stack shared by a subgroup: in registers across it, entry i in lane i % size, so that
 // no memory is touched. An entry holds a node's children still to be visited (any_hit.glsl), so it
 // is no deeper than the tree.
+#ifndef SHADOWS_BVH_SUBGROUP_STACK_GLSL
+#define SHADOWS_BVH_SUBGROUP_STACK_GLSL
 
 const uint kStackRegisters = 4u;
 uint stack_part[kStackRegisters];
@@ -21,3 +23,5 @@ uint stack_pop() {
         if (stack_depth / kLanes == r) part = stack_part[r];
     return subgroupShuffle(part, stack_depth % kLanes);
 }
+
+#endif

@@ -2,7 +2,7 @@
 //
 // Eight lanes test a node's eight children at once (wide subgroups: several nodes). Hits among the
 // inner children become one stack entry, hits among the leaves append their triangles to a list,
-// which is worked off when it is full or the stack is empty.
+// which is worked off when the stack is empty, or when it is full or too long for a beam.
 #include "shadows/bvh/subgroup_stack.glsl"
 
 const uint kNodesAtOnce = kLanes / kWidth;
@@ -60,17 +60,25 @@ ChildVote vote_children(bool inner, uint triangles) {
     return vote;
 }
 
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer TriangleWords {
+    uint64_t at[];
+};
+
+// A WideTriangle, read by words of 64 bits: gathers go word by word on a CPU device.
 void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint primitive) {
-    const WideTriangle t = push.triangles.at[index];
-    a = t.a;
-    b = t.b;
-    c = t.c;
-    primitive = t.primitive;
+    TriangleWords words = TriangleWords(uint64_t(push.triangles));
+    vec2 pair[5];
+    [[unroll]] for (uint i = 0; i < 5; ++i)
+        pair[i] = uintBitsToFloat(unpackUint2x32(words.at[5 * index + i]));
+    a = vec3(pair[0], pair[1].x);
+    b = vec3(pair[1].y, pair[2]);
+    c = vec3(pair[3], pair[4].x);
+    primitive = floatBitsToUint(pair[4].y);
 }
 
 void process_list(uint list, uint count) {
     memoryBarrier(gl_ScopeSubgroup, gl_StorageSemanticsBuffer, gl_SemanticsAcquireRelease);
-    if (count == 0 || !beam_count_triangles(count)) return;
+    if (count == 0 || !beam_take_triangles(count)) return;
     uint i = 0;
     while (true) {
         const bool used = i + lane() < count;
@@ -85,7 +93,7 @@ void beam_walk() {
     if (push.header.header.node_count == 0) return;
     const BeamGrid grid = beam_grid();
     const uint list = gl_WorkGroupID.x * kListLimit;
-    const uint list_full = kListLimit - kMaxLeafCount * kLanes;
+    const uint list_full = min(kListLimit - kMaxLeafCount * kLanes, beam_allowance);
     uint list_count = 0;
     uint entry = 1u;  // the root as the only child of a node that starts at 0
     stack_depth = 0;

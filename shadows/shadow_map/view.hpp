@@ -17,8 +17,8 @@ namespace shadows::shadow_map {
 enum class BiasMode {
     constant,       ///< stored depths move back alike: by `bias` widths of a texel
     slope,          ///< each triangle by what its depth changes over `bias` texels (rasteriser)
-    receiver_plane  ///< depth is compared at the texel's centre, on the receiver's plane; stored
-                    ///< depths move back by `bias` widths of a texel
+    receiver_plane  ///< depth is compared at the texel's centre, on the receiver's plane (Isidoro
+                    ///< 2006); stored depths move back by `bias` widths of a texel
 };
 
 /// A bias that serves most scenes: measured on interiors and generated scenes, at 2048 texels.

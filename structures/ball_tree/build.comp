@@ -64,11 +64,12 @@ vec3 center_of(vec3 lower, vec3 upper) {
     return center;
 }
 
-/// Exactly no area, as TriangleMesh::degenerate decides it.
+/// Exactly no area or a corner that is not finite, as TriangleMesh::degenerate decides it.
 bool degenerate(vec3 a, vec3 b, vec3 c) {
     precise dvec3 u = dvec3(b) - dvec3(a), v = dvec3(c) - dvec3(a);
     precise dvec3 normal = dvec3(u.y * v.z - v.y * u.z, u.z * v.x - v.z * u.x, u.x * v.y - v.x * u.y);
-    return normal == dvec3(0);
+    precise double square = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;
+    return !(square > 0.0LF && square < 1e300LF);
 }
 
 /// Keys that order like the floats they stand for; 0 is below all of them.

@@ -319,11 +319,15 @@ TEST_F(BvhShadow, TinyLimitsLoseNothing) {
     const Scene scene = soup(29, 3000, 0.1f, 64, 48);
     for (const QueryConfig& limits :
          {QueryConfig{.stack = 1}, QueryConfig{.list = 64}, QueryConfig{.steps = 5},
-          QueryConfig{.rounds = 1}, QueryConfig{.split = 1}, QueryConfig{.stack = 1, .rounds = 2}})
+          QueryConfig{.density = 0}, QueryConfig{.stack = 1, .density = 1000}})
         check(scene, limits);
     EXPECT_GT(run(scene, {.stack = 1}).status.stack_full, 0u);
     EXPECT_GT(run(scene, {.steps = 5}).status.step_limit, 0u);
-    EXPECT_GT(run(scene, {.rounds = 1, .split = 1}).status.deferred_points, 0u);
+    EXPECT_GT(run(scene, {.steps = 5}).status.deferred_points, 0u);
+    // A beam that meets too many triangles gives way to packets, and to packets alone.
+    EXPECT_GT(run(scene, {.density = 0}).status.packet_tiles, 0u);
+    EXPECT_EQ(run(scene, {.density = 0}).status.deferred_points, 0u);
+    EXPECT_EQ(run(scene, {.density = 100'000}).status.packet_tiles, 0u);
     // The per-point walk has nobody behind it: it must say that it failed.
     EXPECT_GT(run(scene, {.kind = QueryKind::lane, .point_steps = 2}).status.incomplete, 0u);
 }

@@ -111,7 +111,7 @@ TEST_F(AccuracyTest, TruthCanBeLeftOut) {
     EXPECT_FALSE(fs::exists(folder_ / "cache"));
     ASSERT_EQ(run_city("--out p --set experiment.pictures=false").code, 0);
     EXPECT_TRUE(has_metric("p", "false_lit"));
-    EXPECT_TRUE(fs::is_empty(folder_ / "p/images"));
+    EXPECT_TRUE(json("p/manifest.json").value("images", nlohmann::json()).empty());
     expect_error(run_city("--out s --set experiment.truth=7"), 2,
                  {"experiment.truth", "true or false"});
 }
@@ -163,6 +163,9 @@ TEST_F(AccuracyTest, RunTimeAgainstError) {
         front += csv[at - 1] == '1';
     EXPECT_EQ(lines, 4u);
     EXPECT_EQ(front, 1u);
+    const std::string plot = read_text(folder_ / "r/images/spheres-pareto.svg");
+    EXPECT_THAT(plot, testing::StartsWith("<svg xmlns="));
+    EXPECT_THAT(plot, testing::EndsWith("</svg>\n"));
     const std::string html = read_text(folder_ / "r/report.html");
     EXPECT_THAT(html, HasSubstr("<svg class=\"pareto\""));
     EXPECT_THAT(html, HasSubstr(">scale=0.5</text>"));

@@ -148,6 +148,8 @@ TEST(Config, ListsAreSweeps) {
     ASSERT_EQ(config.scenes.size(), 2u);
     EXPECT_EQ(config.scenes[1].name, "city,resolution=16x8");
     EXPECT_EQ(config.scenes[1].width, 16u);
+    // A method's own key may sweep though a scene's key of that name takes a list.
+    EXPECT_EQ(parse(kText, {"method.0.resolution=[8, 16]"}).methods.size(), 2u);
 }
 
 TEST(Config, SameMethodTwiceNeedsVariants) {

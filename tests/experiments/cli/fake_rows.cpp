@@ -18,6 +18,7 @@ const Parameter kMethodParameters[] = {
     {"fail", std::string("never"), "where to throw", {"never", "prepare", "build", "query", "nan"}},
     {"kill_at", std::int64_t{0}, "kill the process at this query", {}, 0, 1e6},
     {"heat", false, "pretend to have statistics"},
+    {"resolution", std::int64_t{8}, "a number that shares its name with a list", {}, 1, 64},
     {"exact", false, "claim to be exact"},
 };
 

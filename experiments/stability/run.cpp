@@ -1,0 +1,236 @@
+#include "experiments/stability/run.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+
+#include "experiments/stability/judge.hpp"
+#include "experiments/stability/matrix.hpp"
+#include "experiments/stability/suite.hpp"
+#include "experiments/stability/variations.hpp"
+
+namespace experiments::stability {
+namespace {
+
+using measure::Session;
+
+/// What a method did in one test, over all instances: its samples.
+struct Tally {
+    int instances = 0, failed = 0, exceptions = 0;
+    double points = 0, false_lit = 0, false_shadowed = 0, unexpected = 0, ambiguous = 0;
+    double incomplete = 0, deferred = 0, slowest_ms = 0;
+    std::optional<WrongPoint> worst{};
+
+    structures::Samples samples(bool claims_exact) const {
+        structures::Samples list = {{"stability_passed", failed == 0 ? 1.0 : 0.0},
+                                    {"instances", double(instances)},
+                                    {"instances_failed", double(failed)},
+                                    {"exceptions", double(exceptions)},
+                                    {"claims_exact", claims_exact ? 1.0 : 0.0},
+                                    {"points", points},
+                                    {"false_lit", false_lit},
+                                    {"false_shadowed", false_shadowed},
+                                    {"unexpected", unexpected},
+                                    {"ambiguous", ambiguous},
+                                    {"incomplete", incomplete},
+                                    {"deferred_points", deferred},
+                                    {"slowest_ms", slowest_ms, "ms"}};
+        if (worst) {
+            list.push_back({"worst_x", worst->position.x});
+            list.push_back({"worst_y", worst->position.y});
+            list.push_back({"worst_z", worst->position.z});
+            list.push_back({"worst_severity", double(worst->severity)});
+        }
+        return list;
+    }
+};
+
+/// A method of the config; its object answers one scene after another.
+struct Contestant {
+    const config::Method* config;
+    const shadows::MethodRow* row;
+    std::unique_ptr<shadows::Method> method{};
+    bool claims_exact = false;
+    bool broken = false;  ///< cannot even be created
+    Tally tally{};        ///< of the test under way
+
+    std::string label() const { return config->name + " " + config->variant; }
+};
+
+double value_of(const structures::Samples& samples, std::string_view metric) {
+    for (const structures::Sample& sample : samples)
+        if (sample.metric == metric) return sample.value;
+    return 0;
+}
+
+class StabilityRun {
+  public:
+    explicit StabilityRun(Session& session) : session_(session) {
+        for (const config::Method& method : session.config.methods)
+            for (const shadows::MethodRow& row : session.registries.methods)
+                if (row.name == method.name) contestants_.push_back({&method, &row});
+        for (const StressTest& test : suite())
+            if (selected(test)) steps_total_ += int(test.light_types().size());
+    }
+
+    void run() {
+        for (const StressTest& test : suite()) {
+            if (!selected(test)) continue;
+            session_.attempt(test.label(), [&] { run_test(test); });
+        }
+        report_failed_claims();
+    }
+
+  private:
+    bool selected(const StressTest& test) const {
+        const std::vector<int>& tests = session_.config.stability->tests;
+        return std::find(tests.begin(), tests.end(), test.number) != tests.end();
+    }
+
+    measure::Key key(const StressTest& test, const Contestant& contestant) const {
+        return {test.label(), contestant.config->name, contestant.config->variant, 0, 0};
+    }
+
+    /// Those that still have to answer this test, ready to do so.
+    std::vector<Contestant*> contestants(const StressTest& test) {
+        std::vector<Contestant*> list;
+        for (Contestant& contestant : contestants_) {
+            contestant.tally = {};
+            if (contestant.broken || session_.samples.complete(key(test, contestant))) continue;
+            contestant.broken = !session_.attempt(contestant.label(), [&] { create(contestant); });
+            if (!contestant.broken) list.push_back(&contestant);
+        }
+        return list;
+    }
+
+    void create(Contestant& contestant) {
+        if (contestant.method) return;
+        contestant.method = contestant.row->create(session_.device, contestant.config->settings);
+        contestant.claims_exact = contestant.method->claims_exact();
+    }
+
+    void run_test(const StressTest& test) {
+        const std::vector<Contestant*> players = contestants(test);
+        const measure::Key facts{test.label(), measure::kSceneRows, "", 0, 0};
+        double points = 0, instances = 0, triangles = 0;
+        for (const Light::Type type : test.light_types()) {
+            const char* light = type == Light::Type::point ? "point light" : "directional light";
+            session_.progress.step(fmt::format("{}, {}", test.label(), light), steps_done_++,
+                                   steps_total_);
+            if (players.empty() && session_.samples.complete(facts)) continue;
+            for (const Scene& scene : test.build(type)) {
+                for (const Variation& variation :
+                     variations(*session_.config.stability, session_.config.seed, test.most)) {
+                    const std::string place =
+                        fmt::format("{}, {}{}{}, {}", test.label(), light,
+                                    scene.name.empty() ? "" : ", ", scene.name, variation.label());
+                    run_instance(place, vary(scene, variation), variation, players);
+                    ++instances;
+                    points += double(scene.points.size());
+                }
+                triangles = std::max(triangles, double(scene.mesh.triangle_count()));
+            }
+        }
+        for (Contestant* player : players)
+            if (player->tally.instances > 0)
+                session_.samples.append(key(test, *player),
+                                        player->tally.samples(player->claims_exact));
+        // A test that somebody could not take stays open, so that --resume tries it again.
+        if (session_.samples.complete(facts) ||
+            std::any_of(contestants_.begin(), contestants_.end(),
+                        [](const Contestant& c) { return c.broken; }))
+            return;
+        session_.samples.append(
+            facts, {{"instances", instances}, {"points", points}, {"triangles", triangles}});
+    }
+
+    void run_instance(const std::string& place, const Scene& scene, const Variation& variation,
+                      const std::vector<Contestant*>& players) {
+        std::optional<JudgedScene> judged;
+        try {
+            judged = judge(scene, variation.keeps_coordinates());
+        } catch (const std::exception& error) {
+            throw std::runtime_error(fmt::format("{}: {}", place, error.what()));
+        }
+        const shadows::Points points(session_.device, judged->image.arrays, judged->image.width,
+                                     judged->image.height);
+        for (Contestant* player : players) {
+            Tally& tally = player->tally;
+            ++tally.instances;
+            std::string why;
+            try {
+                create(*player);
+                why = answer(*player, *judged, points);
+            } catch (const taskpool::gpu::Error& error) {
+                if (error.result == VK_ERROR_DEVICE_LOST) throw;
+                why = error.what();
+            } catch (const std::exception& error) {
+                why = error.what();
+            }
+            if (why.empty()) continue;
+            // The first of a test is told in full; the rest is in the counts.
+            if (tally.failed++ == 0)
+                session_.progress.note(
+                    fmt::format("{}: {} fails: {}", place, player->label(), why));
+        }
+    }
+
+    /// Lets the method answer; why that is wrong, or nothing.
+    std::string answer(Contestant& player, const JudgedScene& judged,
+                       const shadows::Points& points) {
+        using Clock = std::chrono::steady_clock;
+        Tally& tally = player.tally;
+        shadows::Visibility visible;
+        structures::Samples asked;
+        const Clock::time_point begin = Clock::now();
+        try {
+            player.method->prepare(judged.scene.mesh);
+            player.method->build(judged.scene.light);
+            asked = player.method->query(points, visible);
+        } catch (...) {
+            ++tally.exceptions;
+            player.method.reset();  // who knows in what state
+            throw;
+        }
+        const std::chrono::duration<double, std::milli> time = Clock::now() - begin;
+        tally.slowest_ms = std::max(tally.slowest_ms, time.count());
+        const Marks marks = judged.mark(visible);
+        const double incomplete = value_of(asked, "incomplete");
+        tally.points += marks.score.points;
+        tally.false_lit += marks.score.false_lit;
+        tally.false_shadowed += marks.score.false_shadowed;
+        tally.ambiguous += marks.score.ambiguous;
+        tally.unexpected += marks.unexpected;
+        tally.incomplete += incomplete;
+        tally.deferred += value_of(asked, "deferred_points");
+        if (marks.worst && (!tally.worst || marks.worst->severity > tally.worst->severity))
+            tally.worst = marks.worst;
+        if (incomplete > 0) return fmt::format("{} points left without an answer", incomplete);
+        if (marks.passed()) return {};
+        const WrongPoint& worst = *marks.worst;
+        return fmt::format("{} false lit, {} false shadowed, {} unexpected; ({}, {}, {}) is not {}",
+                           marks.score.false_lit, marks.score.false_shadowed, marks.unexpected,
+                           worst.position.x, worst.position.y, worst.position.z,
+                           worst.called_lit ? "lit" : "shadowed");
+    }
+
+    /// From the file, so that a resumed run reports what the first part has found.
+    void report_failed_claims() {
+        const auto results = measure::summarise(measure::read_samples(session_.folder.samples()));
+        for (const std::string& line : broken_claims(results)) {
+            session_.failures.push_back(line);
+            session_.progress.error(line);
+        }
+    }
+
+    Session& session_;
+    std::vector<Contestant> contestants_;
+    int steps_total_ = 0, steps_done_ = 0;
+};
+
+}  // namespace
+
+void run_stability(Session& session) { StabilityRun(session).run(); }
+
+}  // namespace experiments::stability

@@ -1,0 +1,90 @@
+// What C++ and the kernels of the irregular z-buffer share.
+#ifndef SHADOWS_IZB_IZB_SHARED_H
+#define SHADOWS_IZB_IZB_SHARED_H
+
+#ifdef __cplusplus
+#include <cstddef>
+
+#include "taskpool/gpu/shared_types.h"
+
+namespace shadows::izb {
+using namespace taskpool::gpu::shared_types;
+#define GROVE_CONSTANT inline constexpr
+#else
+#define GROVE_CONSTANT const
+#endif
+
+GROVE_CONSTANT uint kFaces = 6u;       // of the cube around the light: 2 axis + (1 on the low side)
+GROVE_CONSTANT uint kLevels = 12u;     // of a face's pyramid: 2048 cells a side at most
+GROVE_CONSTANT uint kTileLog = 3u;     // tiles of 8 x 8 cells: level 3 of the pyramid
+GROVE_CONSTANT uint kRowCells = 256u;  // cells a side of the longest entry
+GROVE_CONSTANT uint kRangePoints = 2048u;  // points of one cell tested in one go
+
+// One face's grid: 2^log_width x 2^log_height cells, row by row, over the rectangle of u and v that
+// its points fill. Nothing but `points` is set where there are none.
+struct IzbFace {
+    vec2 lower;
+    vec2 upper;
+    vec2 cells_per_unit;
+    vec2 cell;    // size
+    vec2 pad;     // rounding: a cell's points lie within its rectangle widened by this
+    float reach;  // largest 1-norm of a point's coordinates in the frame
+    uint points;
+    uint log_width;
+    uint log_height;
+    uint level_count;
+    uint level_first[12];  // first node of each level; those of level 0 are the cells
+};
+
+// The frame of a query; see frame.glsl.
+struct IzbFrame {
+    vec3 origin;
+    float scale;
+    vec2 tilt;        // directional light: t.x / t.z and t.y / t.z, t towards the light
+    uint face;        // directional light: the only face
+    uint cell_count;  // of all faces
+    IzbFace faces[6];
+};
+
+// Extent of the points of one face, floats as ordered words (see ordered() in frame.glsl), of which
+// the lower ones are stored complemented: all grow from 0.
+struct IzbExtent {
+    uint not_lower_u, not_lower_v, upper_u, upper_v, reach, points;
+};
+
+// A triangle and cells that may hold points it occludes.
+struct IzbEntry {
+    uint caster;  // triangle | face << 29
+    uint lower;   // first cell: x | y << 16
+    uint upper;   // last cell
+    float reach;  // largest 1-norm of the cells' points
+};
+
+// Points of one cell left to be tested against an entry's triangle.
+struct IzbRange {
+    uint entry;
+    uint begin;
+    uint end;
+};
+
+struct IzbStatus {
+    uint entry_count;  // more than the capacity: some did not fit, and the pass must be repeated
+    uint range_count;  // likewise
+    uint next_entry;
+    uint next_range;
+    // With statistics, as 64-bit counts, low word first: points against the functions of a
+    // triangle, and of these, points left to the exact test.
+    uvec2 tests;
+    uvec2 exact_tests;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(IzbFace) == 108);
+static_assert(sizeof(IzbFrame) == 32 + 6 * sizeof(IzbFace));
+static_assert(sizeof(IzbExtent) == 24);
+static_assert(sizeof(IzbEntry) == 16 && sizeof(IzbRange) == 12);
+static_assert(sizeof(IzbStatus) == 32 && offsetof(IzbStatus, tests) == 16);
+}  // namespace shadows::izb
+#endif
+#undef GROVE_CONSTANT
+#endif

@@ -1,0 +1,98 @@
+// Shadow query by an irregular z-buffer: for each G-buffer point, is the segment to the light free?
+//
+//     Query query(device, {});
+//     query.prepare(mesh);
+//     query.set_light(light);
+//     QueryResult result = query.run(points, visible);
+//
+// The points are sorted into the cells of a grid on the faces of a cube around the light (one plane
+// for a directional light), fitted to what they fill of it, with a pyramid of the farthest point
+// above the cells. Each triangle is rasterised conservatively: cells whose points it may shadow,
+// and which are not all in front of its plane or shadowed already, have their points tested, first
+// by linear functions with error bounds (caster.glsl), and where those cannot decide by the exact
+// test (shadows/occlusion.glsl). After G. Johnson, J. Lee, C. Burns and W. Mark, "The irregular
+// z-buffer: hardware acceleration for irregular data structures", 2005, and T. Aila and S. Laine,
+// "Alias-free shadow maps", 2004; the compute version after C. Wyman, R. Hoetzlein and A. Lefohn,
+// "Frustum-traced raster shadows", 2015. Deviations: points are compacted per cell instead of
+// linked in lists, and triangles that cross planes through the light are not clipped.
+//
+// Lists that turn out too short are used with fewer triangles at a time; nothing is dropped.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+
+#include "shadows/izb/grid.hpp"
+#include "shadows/points.hpp"
+#include "structures/geometry/triangle_mesh.hpp"
+#include "taskpool/gpu/recorder.hpp"
+#include "taskpool/primitives/scan.hpp"
+
+namespace shadows::izb {
+
+struct QueryConfig {
+    std::uint32_t resolution = 0;  ///< cells along a face's longer side; 0: from the points
+    bool statistics = false;
+    std::uint32_t entries = 0;  ///< room in the list of entries; 0: from the number of triangles
+    std::uint32_t ranges = 0;   ///< room in the list of ranges; 0: from the number of cells
+    bool operator==(const QueryConfig&) const = default;
+};
+
+struct QueryResult {
+    double milliseconds = 0;        ///< on the device
+    std::uint32_t cells = 0;        ///< of all faces
+    std::uint64_t entries = 0;      ///< pairs of a triangle and a block of cells
+    std::uint64_t ranges = 0;       ///< pieces of crowded cells, tested apart
+    std::uint32_t passes = 0;       ///< over the triangles: more than 1 where a list was too short
+    std::uint64_t tests = 0;        ///< with statistics: point-triangle pairs tested
+    std::uint64_t exact_tests = 0;  ///< with statistics: of these, by the exact test
+};
+
+class Query {
+  public:
+    Query(taskpool::gpu::Device& device, const QueryConfig& config);
+
+    /// Uploads the triangles that can cast a shadow: finite, and not degenerate. Throws
+    /// std::invalid_argument if there are 2^29 or more.
+    void prepare(const structures::geometry::TriangleMesh& mesh);
+    /// Throws std::invalid_argument if the light is not finite, or a directional one is 0.
+    void set_light(const structures::geometry::Light& light);
+    /// Submits, several times, and waits.
+    QueryResult run(const Points& points, Visibility& visible);
+
+    std::size_t memory_bytes() const;
+
+  private:
+    struct Kernels {
+        taskpool::gpu::Kernel bounds, count, scatter, reduce, cast, test, ranges, answer;
+    };
+    struct Push;
+
+    const Kernels& kernels();
+    Push make_push(const Points& points) const;
+    void allocate_points(std::uint32_t count);
+    void allocate_cells(const Grid& grid);
+    Grid bin(const Points& points, QueryResult& result);
+    void shadow(const Points& points, QueryResult& result);
+    /// Whether both lists had room for the `count` triangles from `first` on.
+    bool shadow_batch(const Push& push, std::uint32_t first, std::uint32_t count,
+                      QueryResult& result);
+    void submit(QueryResult& result, const std::function<void(taskpool::gpu::Recorder&)>& record);
+
+    taskpool::gpu::Device& device_;
+    QueryConfig config_;
+    taskpool::primitives::Scan scan_;
+    taskpool::gpu::Timestamps times_;
+    std::array<Kernels, 2> kernels_;  ///< point, directional; compiled when first needed
+    taskpool::gpu::Buffer triangles_, frame_, extents_, status_;
+    taskpool::gpu::Buffer keys_, places_, order_, binned_, visible_;  // per point
+    taskpool::gpu::Buffer cells_, farthest_, scratch_;                // per cell
+    taskpool::gpu::Buffer entries_, ranges_;
+    structures::geometry::Aabb bounds_;
+    structures::geometry::Light light_;
+    IzbFrame base_frame_{};
+    std::uint32_t triangle_count_ = 0;
+};
+
+}  // namespace shadows::izb
