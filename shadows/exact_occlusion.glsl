@@ -26,7 +26,7 @@
 
 // Of this invocation so far, for those who want to know; costs nothing if nobody does.
 uint double_decisions = 0;  // segments and triangles that came here
-uint exact_decisions = 0;   // of these, with a sign that double precision left open
+uint exact_decisions = 0;   // those that needed error-free sums
 uint exact_loops = 0;       // loop iterations that this took
 
 // Those since the last call, for walks whose loops are counted.
@@ -123,31 +123,33 @@ bool misses(int receiver, int light, int ab, int bc, int ca) {
            (receiver == light && receiver != kUnsure);
 }
 
-bool occludes_exactly(Segment s, vec3 a, vec3 b, vec3 c) {
+// 1, 0, or kUnsure if double precision does not tell.
+int occludes_in_double(Segment s, vec3 a, vec3 b, vec3 c) {
     ++double_decisions;
     const float w = s.directional ? 0.0 : 1.0;
-    int sides[5];
-    sides[0] = side_in_double(s.origin, 1.0, a, b, c);
-    sides[1] = side_in_double(s.target, w, a, b, c);
-    sides[2] = side_in_double(s.target, w, s.origin, b, a);
-    sides[3] = side_in_double(s.target, w, s.origin, c, b);
-    sides[4] = side_in_double(s.target, w, s.origin, a, c);
-    if (misses(sides[0], sides[1], sides[2], sides[3], sides[4])) return false;
-    uint unsure = 0;
-    [[unroll]] for (uint i = 0; i < 5; ++i) unsure |= sides[i] == kUnsure ? 1u << i : 0u;
-    if (unsure == 0) return true;
+    const int receiver = side_in_double(s.origin, 1.0, a, b, c);
+    const int light = side_in_double(s.target, w, a, b, c);
+    const int ab = side_in_double(s.target, w, s.origin, b, a);
+    const int bc = side_in_double(s.target, w, s.origin, c, b);
+    const int ca = side_in_double(s.target, w, s.origin, a, c);
+    if (misses(receiver, light, ab, bc, ca)) return 0;
+    const bool unsure = receiver == kUnsure || light == kUnsure || ab == kUnsure ||
+                        bc == kUnsure || ca == kUnsure;
+    return unsure ? kUnsure : 1;
+}
+
+bool occludes_exactly(Segment s, vec3 a, vec3 b, vec3 c) {
     ++exact_decisions;
-    while (true) {
-        const uint i = findLSB(unsure);
-        unsure &= unsure - 1u;
+    const float w = s.directional ? 0.0 : 1.0;
+    int sides[5];
+    for (uint i = 0; i < 5; ++i) {
         const vec3 x = i < 2 ? a : s.origin;
         const vec3 y = i < 3 ? b : i == 3 ? c : a;
         const vec3 z = i < 2 ? c : i == 2 ? a : i == 3 ? b : c;
         const int side = side_exactly(i == 0 ? s.origin : s.target, i == 0 ? 1.0 : w, x, y, z);
         [[unroll]] for (uint k = 0; k < 5; ++k) sides[k] = k == i ? side : sides[k];
-        if (misses(sides[0], sides[1], sides[2], sides[3], sides[4])) return false;
-        if (unsure == 0) return true;
     }
+    return !misses(sides[0], sides[1], sides[2], sides[3], sides[4]);
 }
 
 #endif

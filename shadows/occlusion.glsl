@@ -4,6 +4,9 @@
 //     Segment s = point_segment(p, light);             // or directional_segment(p, towards_light)
 //     if (primitive != own && occludes(s, a, b, c)) ...
 //
+// Kernels that can put a point off may call occludes_quickly() and spare themselves the last resort,
+// which a few pairs in a million need, but whose code slows down all.
+//
 // A hit is a proper crossing of the closed triangle, from either side, strictly between receiver
 // and light. A segment in the triangle's plane hits nothing; neither does one that ends on it. The
 // answer is that of exact arithmetic on the single-precision inputs, whatever device or compiler:
@@ -72,7 +75,8 @@ Segment point_segment(vec3 p, vec3 light) {
 
 Segment directional_segment(vec3 p, vec3 towards) { return make_segment(p, towards, towards, true); }
 
-bool occludes(Segment s, vec3 a, vec3 b, vec3 c) {
+// 1, 0, or kUnsure: left to occludes_exactly().
+int occludes_quickly(Segment s, vec3 a, vec3 b, vec3 c) {
     precise vec3 ra = axis_last(a - s.origin, s.axis);
     precise vec3 rb = axis_last(b - s.origin, s.axis);
     precise vec3 rc = axis_last(c - s.origin, s.axis);
@@ -88,7 +92,7 @@ bool occludes(Segment s, vec3 a, vec3 b, vec3 c) {
     precise float size = across + deepest;
     precise float error = (across + size * 9.5367431640625e-7) * size * 1.9073486328125e-6 + s.slack;
     const float least = min(min(u, v), w), most = max(max(u, v), w);
-    if (least < -error && most > error) return false;
+    if (least < -error && most > error) return 0;
     if (least > error || most < -error) {
         precise float depth = u * (ra.z * s.shear.z) + v * (rb.z * s.shear.z) + w * (rc.z * s.shear.z);
         precise float total = abs(u + v + w), scaled = least > 0 ? depth : -depth;
@@ -96,10 +100,16 @@ bool occludes(Segment s, vec3 a, vec3 b, vec3 c) {
         precise float near_error = 4.0 * error * (deepest * abs(s.shear.z)) + s.slack;
         precise float far_error = near_error + 4.0 * error;
         if (far_error < 1e32) {
-            if (scaled > near_error && (s.directional || beyond > far_error)) return true;
-            if (scaled < -near_error || (!s.directional && beyond < -far_error)) return false;
+            if (scaled > near_error && (s.directional || beyond > far_error)) return 1;
+            if (scaled < -near_error || (!s.directional && beyond < -far_error)) return 0;
         }
     }
+    return occludes_in_double(s, a, b, c);
+}
+
+bool occludes(Segment s, vec3 a, vec3 b, vec3 c) {
+    const int quick = occludes_quickly(s, a, b, c);
+    if (quick != kUnsure) return quick == 1;
     return occludes_exactly(s, a, b, c);
 }
 

@@ -51,6 +51,7 @@ uint beam_tile;
 uint beam_primitives;  // which hashes the primitives of its points have
 uint beam_group;     // slots of the group
 uint beam_occluded;  // slots found occluded, of any group
+uint beam_unsure;    // slots with a triangle that double precision cannot tell
 uint beam_steps;     // loop iterations so far
 uint beam_live;      // sections with slots of the group that are not yet occluded
 uint beam_end;       // why the walk of the group ended
@@ -93,7 +94,9 @@ void test_exactly(uint index, uint slots) {
             segment = directional_segment(p, beam_light);
         else
             segment = point_segment(p, beam_light);
-        if (occludes(segment, a, b, c)) beam_occluded |= 1u << k;
+        const int hit = occludes_quickly(segment, a, b, c);
+        if (hit == 1) beam_occluded |= 1u << k;
+        if (hit == kUnsure) beam_unsure |= 1u << k;
         ++beam_exact_tests;
         if (slots == 0) break;
     }
@@ -144,7 +147,6 @@ void beam_test_triangles(uint index, bool used) {
         // The loop of the exact tests counts for all lanes, or not at all.
         if (kLoopsAreCut && subgroupAny(doubtful != 0)) beam_steps += kSlots;
         if (doubtful != 0) test_exactly(index_from, doubtful);
-        if (kLoopsAreCut) beam_steps += subgroupMax(take_exact_loops());
     }
     beam_live = live_sections(beam_group & ~beam_occluded);
     beam_finished = beam_live == 0;
@@ -156,7 +158,7 @@ TileAnswer answer_tile(uint tile, vec3 origin, float size) {
     beam_tile = tile;
     beam_origin = origin;
     beam_scale = scale_for(size);
-    beam_occluded = beam_steps = beam_nodes = beam_triangles = beam_exact_tests = 0;
+    beam_occluded = beam_unsure = beam_steps = beam_nodes = beam_triangles = beam_exact_tests = 0;
     TileAnswer answer = TileAnswer(0, 0, 0, 0, 0);
     uint todo = 0, primitives = 0;
     [[unroll]] for (uint k = 0; k < kSlots; ++k) {
@@ -199,6 +201,7 @@ TileAnswer answer_tile(uint tile, vec3 origin, float size) {
         }
     }
     answer.occluded = beam_occluded;
+    answer.left |= beam_unsure & ~beam_occluded;
     answer.exact_tests = beam_exact_tests;
     return answer;
 }

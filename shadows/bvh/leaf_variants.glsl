@@ -2,6 +2,7 @@
 // to see what they cost in correctness. Only the exact test counts as an answer.
 //
 //     if (leaf_occludes(segment, a, b, c)) ...
+//     int hit = leaf_occludes_quickly(segment, a, b, c);   // 1, 0, or kUnsure: ask again the other way
 //
 // The shortcuts decide as their authors wrote them down, in plain floating point.
 #ifndef SHADOWS_BVH_LEAF_VARIANTS_GLSL
@@ -71,11 +72,17 @@ bool occludes_plain_double(Segment s, vec3 a, vec3 b, vec3 c) {
     return (here < 0.0LF && there > 0.0LF) || (here > 0.0LF && there < 0.0LF);
 }
 
+int leaf_occludes_quickly(Segment s, vec3 a, vec3 b, vec3 c) {
+    if (kLeaf == kLeafWatertight) return int(occludes_watertight(s, a, b, c));
+    if (kLeaf == kLeafMoellerTrumbore) return int(occludes_moeller_trumbore(s, a, b, c));
+    if (kLeaf == kLeafDouble) return int(occludes_plain_double(s, a, b, c));
+    return occludes_quickly(s, a, b, c);
+}
+
 bool leaf_occludes(Segment s, vec3 a, vec3 b, vec3 c) {
-    if (kLeaf == kLeafWatertight) return occludes_watertight(s, a, b, c);
-    if (kLeaf == kLeafMoellerTrumbore) return occludes_moeller_trumbore(s, a, b, c);
-    if (kLeaf == kLeafDouble) return occludes_plain_double(s, a, b, c);
-    return occludes(s, a, b, c);
+    const int quick = leaf_occludes_quickly(s, a, b, c);
+    if (quick != kUnsure) return quick == 1;
+    return occludes_exactly(s, a, b, c);
 }
 
 #endif

@@ -1,15 +1,19 @@
 // Packets: a subgroup's segments, neighbours on the screen, share one stack and walk together
 // wherever one of them has to go. Lanes load a node's children once and pass them round; a packet
-// that runs out of stack or steps is left to the per-point walk.
+// that runs out of stack or steps, or meets a triangle
+// that double precision cannot tell, is left to the per-point walk.
 #ifndef SHADOWS_BVH_PACKET_GLSL
 #define SHADOWS_BVH_PACKET_GLSL
 #include "shadows/bvh/any_hit.glsl"
 #include "shadows/bvh/subgroup_stack.glsl"
 
-bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout BvhWalk walk) {
+// `unsure`: some triangle is left to the per-point walk, which matters if there is no hit.
+bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout BvhWalk walk,
+                     out bool unsure) {
     const WideHeader header = push.header.header;
     const SlabTest test = slab_test(header, segment);
     bool hit = false;
+    unsure = false;
     uint entry = header.node_count > 0 ? 1u : 0u;
     stack_depth = 0;
     while (true) {
@@ -46,12 +50,14 @@ bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout BvhW
                     triangle = leaf_first(link);
                     last = triangle + leaf_count(link);
                 }
-                const uint loops = kLoopsAreCut ? subgroupMax(take_exact_loops()) : 0u;
-                walk.steps -= min(walk.steps, 1u + loops);
+                walk.steps -= min(walk.steps, 1u);
                 ++walk.triangles;
                 const WideTriangle t = push.triangles.at[triangle++];
-                if (has_bit(leaves, slot) && !hit && t.primitive != own_primitive)
-                    hit = leaf_occludes(segment, t.a, t.b, t.c);
+                if (has_bit(leaves, slot) && !hit && t.primitive != own_primitive) {
+                    const int answer = leaf_occludes_quickly(segment, t.a, t.b, t.c);
+                    hit = answer == 1;
+                    unsure = unsure || answer == kUnsure;
+                }
             }
             if (!subgroupAny(asked && !hit)) break;
         }
@@ -86,10 +92,11 @@ PacketAnswer answer_packets(uint tile, uint slots, inout uint steps, PointCost c
         BvhWalk walk = bvh_walk_begin(steps);
         if (subgroupAny(asked)) {
             const uint point = tile_point(tile, k);
+            bool unsure;
             const bool hit =
-                packet_occluded(segment_of(point), primitive_of(point), asked, walk);
+                packet_occluded(segment_of(point), primitive_of(point), asked, walk, unsure);
             if (hit && asked) answer.occluded |= 1u << k;
-            if (!hit && asked && walk.end != kEndFinished) answer.deferred |= 1u << k;
+            if (!hit && asked && (unsure || walk.end != kEndFinished)) answer.deferred |= 1u << k;
             answer.stack_full += walk.end == kEndStackFull ? 1 : 0;
             answer.step_limit += walk.end == kEndStepLimit ? 1 : 0;
             steps = steps_after(walk.steps);
