@@ -21,8 +21,8 @@ using shadows::truth::Effort;
 using shadows::truth::Verdict;
 using shadows::truth::Verdicts;
 
-/// To be raised whenever shadows/truth answers otherwise than before, or the file changes.
-constexpr int kVersion = 1;
+/// Of the file's layout.
+constexpr int kLayout = 1;
 
 // A file holds the checksum of its body in hexadecimal digits, then the body: the key, the effort,
 // one byte per point.
@@ -57,8 +57,9 @@ std::string damage(std::string_view text, const std::string& key, std::size_t co
 std::string truth_key(const structures::geometry::TriangleMesh& mesh,
                       const structures::geometry::Light& light,
                       const shadows::PointArrays& points) {
-    std::string parts = fmt::format("truth {} {} {:a} {:a} {:a}", kVersion, int(light.type),
-                                    light.vector.x, light.vector.y, light.vector.z);
+    std::string parts =
+        fmt::format("truth {} {} {} {:a} {:a} {:a}", kLayout, shadows::truth::kVersion,
+                    int(light.type), light.vector.x, light.vector.y, light.vector.z);
     for (const std::string_view part : {bytes_of(mesh.positions), bytes_of(mesh.triangles),
                                         bytes_of(points.x), bytes_of(points.y), bytes_of(points.z),
                                         bytes_of(points.primitive), bytes_of(points.normal)})

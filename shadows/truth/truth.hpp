@@ -31,6 +31,9 @@
 
 namespace shadows::truth {
 
+/// To be raised whenever verdicts may come out otherwise than before: stored ones carry it.
+inline constexpr int kVersion = 1;
+
 /// What is known of one point, in one byte.
 struct Verdict {
     enum Bits : std::uint8_t {

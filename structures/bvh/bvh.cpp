@@ -18,28 +18,28 @@ using namespace taskpool;
 constexpr std::uint32_t kDeterministicLeafRange = 8;
 constexpr std::uint32_t kMaxLeafRange = 32;  // a set of lanes is one word there
 
-// The kernel's struct Task: 18 words of range and rule, 6 of bounds, and five boxes of keys.
+// The kernel's struct Task: 20 words of range and rule, 6 of bounds, and five boxes of keys.
 struct Task {
     uint first, count, node, depth, side;
     uint box[kKeys];
     float center_lower[3], center_upper[3];
     uint rule, axis;
-    float position;
-    uint looks;
-    float axis_cost[3], axis_position[3];
+    float middle;
+    uint cut, looks, axes;
+    float bin_scale[3], bin_offset[3];
     uint left_count;
     uint children[4 * kKeys];
 };
-static_assert(sizeof(Task) == 52 * 4);
+static_assert(sizeof(Task) == 54 * 4);
 
 struct Client {
-    std::uint64_t primitives, order[2], nodes, scratch, input;
+    std::uint64_t primitives[2], order, nodes, scratch, input;
 };
 static_assert(sizeof(Client) == 48);
 
-std::size_t scratch_words(std::size_t triangles, std::uint32_t planes) {
-    const std::size_t chunks = triangles / kChunkPrimitives + 1;
-    return chunks * (planes * (2 * kKeys + 1) + 4 * kKeys) + 2 * (chunks + 1);
+std::size_t scratch_words(std::size_t triangles) {
+    const std::size_t chunks = triangles / kChunkPrimitives + 1, bins = 3 * kBins;
+    return chunks * (bins * (kKeys + 1) + 4 * kKeys) + 2 * (chunks + 1) * bins;
 }
 
 std::size_t node_count(std::size_t triangles) { return std::max<std::size_t>(2 * triangles, 1); }
@@ -50,27 +50,28 @@ std::uint32_t leaf_range_of(std::uint32_t lanes, const Config& config) {
 
 pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
     const std::uint32_t lanes = device.subgroup_size();
-    const std::uint32_t rows = (config.planes + lanes - 1) / lanes;
+    const std::uint32_t axis_lanes = std::min(lanes, 8u);
     pool::ClientSpec spec;
     spec.loops = 64;
     spec.task_bytes = sizeof(Task);
-    // A small task's looks and its move, or a subgroup's leaves, and the transition.
+    // A small task's look and its move, or a subtree of one primitive here, the others there; and
+    // the transition.
     const std::uint32_t groups = kChunkPrimitives / lanes,
                         leaf_range = leaf_range_of(lanes, config);
-    spec.chunk_iterations = config.small_looks * (kChunkPrimitives / 4 + 3 * groups) + 2 * groups +
-                            2 * (leaf_range + 2) * (leaf_range + 2) + 16 * config.planes + 1024;
+    const std::uint32_t small = kChunkPrimitives / axis_lanes + 4 * groups,
+                        subtree = 40 * kSubtreePrimitives + 2 * (leaf_range + 2) * (leaf_range + 2);
+    spec.chunk_iterations = std::max(small, subtree) + 1024;
     spec.constants = {
-        {16, config.planes},
-        {17, rows},
+        {16, axis_lanes},
+        {17, (3 * axis_lanes + lanes - 1) / lanes},
         {18, config.max_leaf_size},
         {19, config.leaf_by_cost},
         {20, float(config.costs.traversal)},
         {21, float(config.costs.intersection)},
         {22, leaf_range_of(lanes, config)},
+        {25, lanes},
         {23, config.split == Split::spatial_median},
         {24, config.max_depth},
-        {25, config.large_looks},
-        {26, config.small_looks},
     };
     return spec;
 }
@@ -80,13 +81,10 @@ const Config& checked(const gpu::Device& device, const Config& config) {
         if (!holds) throw std::invalid_argument(fmt::format("BVH build: {}", what));
     };
     const std::uint32_t lanes = device.subgroup_size();
-    require(config.planes >= 3 && config.planes <= 192, "planes must be from 3 to 192");
     require(config.max_leaf_size >= 1 && config.max_leaf_size <= std::min(lanes, 8u),
             "max_leaf_size must be from 1 to 8, and at most the subgroup size");
     require(config.max_depth >= 33, "max_depth must be at least 33");
     require(config.costs.traversal >= 0 && config.costs.intersection > 0, "costs must be positive");
-    require(config.large_looks >= 1 && config.large_looks <= 8, "large_looks must be from 1 to 8");
-    require(config.small_looks >= 1 && config.small_looks <= 8, "small_looks must be from 1 to 8");
     return config;
 }
 
@@ -103,8 +101,8 @@ std::size_t BvhBuild::output_bytes(std::size_t triangles) {
 }
 
 std::size_t BvhBuild::required_bytes(std::size_t triangles) const {
-    return output_bytes(triangles) + triangles * (sizeof(Primitive) + sizeof(uint)) +
-           scratch_words(triangles, config_.planes) * 4 + sizeof(BuildInput) +
+    return output_bytes(triangles) + triangles * 2 * sizeof(Primitive) +
+           scratch_words(triangles) * 4 + sizeof(BuildInput) +
            pool::Pool::required_bytes(*device_, client_spec(*device_, config_), config_.pool);
 }
 
@@ -117,16 +115,15 @@ void BvhBuild::prepare(const geometry::TriangleMesh& mesh) {
     triangles_ = gpu::make_buffer<glm::uvec3>(*device_, mesh.triangles, "mesh triangles");
     const BuildInput input{positions_.address(), triangles_.address(), triangle_count_, 0};
     input_ = gpu::make_buffer<BuildInput>(*device_, std::span(&input, 1), "BVH build input");
-    primitives_ = gpu::Buffer(*device_, count * sizeof(Primitive), "BVH build primitives");
+    for (gpu::Buffer& primitives : primitives_)
+        primitives = gpu::Buffer(*device_, count * sizeof(Primitive), "BVH build primitives");
     nodes_ = gpu::Buffer(*device_, node_count(count) * sizeof(BvhNode), "BVH nodes");
     order_ = gpu::Buffer(*device_, count * sizeof(uint), "BVH order");
-    other_order_ = gpu::Buffer(*device_, count * sizeof(uint), "BVH build order");
-    scratch_ = gpu::Buffer(*device_, scratch_words(count, config_.planes) * 4, "BVH build scratch");
+    scratch_ = gpu::Buffer(*device_, scratch_words(count) * 4, "BVH build scratch");
 }
 
 void BvhBuild::release_scratch() {
-    primitives_ = {};
-    other_order_ = {};
+    for (gpu::Buffer& primitives : primitives_) primitives = {};
     scratch_ = {};
 }
 
@@ -144,8 +141,8 @@ void BvhBuild::record(gpu::Recorder& recorder) {
         recorder.barrier();
         first_launch_ = false;
     }
-    pool_.record(recorder, Client{primitives_.address(),
-                                  {order_.address(), other_order_.address()},
+    pool_.record(recorder, Client{{primitives_[0].address(), primitives_[1].address()},
+                                  order_.address(),
                                   nodes_.address(),
                                   scratch_.address(),
                                   input_.address()});
@@ -167,8 +164,8 @@ Tree BvhBuild::read_back() const {
 }
 
 std::span<const std::string> phase_names() {
-    static const std::string names[] = {"setup",     "compact", "planes", "count",
-                                        "partition", "small",   "leaves"};
+    static const std::string names[] = {"setup",     "compact", "bins",   "count",
+                                        "partition", "small",   "subtree"};
     return names;
 }
 

@@ -22,19 +22,12 @@
 namespace structures::bvh {
 
 enum class Split {
-    binned_sah,      ///< the cheapest of candidate planes on the three axes
+    binned_sah,      ///< the cheapest split between bins on the three axes
     spatial_median,  ///< the middle of the centres' bounds, on their longest axis
 };
 
 struct Config {
     Split split = Split::binned_sah;
-    /// Candidate planes of one look, dealt to the three axes in turn: evenly spaced in the first
-    /// look, through primitives' centres in the second, around each axis' best plane in further
-    /// ones.
-    std::uint32_t planes = 32;
-    /// Looks, 1 to 8, at ranges of more than 1024 primitives and at smaller ones down to 33; one
-    /// look at what is smaller still.
-    std::uint32_t large_looks = 2, small_looks = 2;
     std::uint32_t max_leaf_size = 4;  ///< 1 to 8
     bool leaf_by_cost = true;         ///< false: every range of at most max_leaf_size is a leaf
     CostModel costs;
@@ -87,8 +80,7 @@ class BvhBuild final : public taskpool::pool::Job {
     taskpool::gpu::Device* device_;
     Config config_;
     taskpool::pool::Pool pool_;
-    taskpool::gpu::Buffer positions_, triangles_, input_, primitives_, nodes_, order_, other_order_,
-        scratch_;
+    taskpool::gpu::Buffer positions_, triangles_, input_, primitives_[2], nodes_, order_, scratch_;
     std::uint32_t triangle_count_ = 0;
     bool first_launch_ = true;
 };

@@ -174,7 +174,6 @@ TEST_F(BvhGpu, RefusesBadSettings) {
         change(config);
         EXPECT_THROW(BvhBuild(tests::device(), config), std::invalid_argument);
     };
-    refuses([](Config& c) { c.planes = 1; });
     refuses([](Config& c) { c.max_leaf_size = 0; });
     refuses([](Config& c) { c.max_leaf_size = 9; });
     refuses([](Config& c) { c.max_depth = 5; });

@@ -1,7 +1,7 @@
 // Top-down BVH build on the task pool: binned SAH or spatial median, then full SAH over ranges that
 // fit a subgroup (Vinkler, Bittner and Havran 2013, section 4.1).
 //
-// Departures from the paper: candidate planes lie in the bounds of the primitives' centres; children
+// Departures from the paper: bins divide the bounds of the primitives' centres; children
 // are numbered by where their range is split, so nodes need no atomic counter; where a primitive
 // lands depends on nothing but the input. Equal inputs give equal trees, bit for bit, whatever the
 // number of subgroups and the policy; and on every device if kLeafRange is the same.
@@ -16,23 +16,23 @@
 layout(constant_id = 22) const uint kLeafRange = 8;
 layout(constant_id = 23) const bool kSpatialMedian = false;
 layout(constant_id = 24) const uint kMaxDepth = 64;
-/// Looks at candidate planes: of ranges of more than kChunkPrimitives, and of smaller ones.
-layout(constant_id = 25) const uint kLargeLooks = 2;
-layout(constant_id = 26) const uint kSmallLooks = 2;
 
 const uint kRuleHalve = 0;  // the first half goes left
-const uint kRulePlane = 1;  // centres up to `position` on `axis` go left
+const uint kRuleMiddle = 1;  // centres up to `middle` on `axis` go left
+const uint kRuleBins = 2;    // bins up to `cut` of `axis` go left
 
 struct Task {
     uint first, count;
     uint node, depth;
-    uint side;  // which order holds the range
+    uint side;  // which primitives hold the range
     KeyBox box;
     vec3 center_lower, center_upper;  // bounds of lower + upper of the primitives' boxes
     uint rule, axis;
-    float position;
-    bool looks;  // for the best plane; otherwise the rule is set
-    vec3 axis_cost, axis_position;  // of the best plane so far on each axis
+    float middle;
+    uint cut;
+    bool looks;  // for the best split between bins; otherwise the rule is set
+    uint axes;  // a bit for each that is looked at
+    vec3 bin_scale, bin_offset;
     uint left_count;
     KeyBox left_box, left_centers, right_box, right_centers;
 };
@@ -43,8 +43,8 @@ pool_buffer(4) Scratch { uint words[]; };
 pool_buffer(8) Input { BuildInput data; };
 
 struct Client {
-    Primitives primitives;  // by triangle
-    PoolUints order[2];     // of the primitives, from one half to the other; the first is the output
+    Primitives primitives[2];  // sorted from one into the other
+    PoolUints order;           // output: their triangles in leaf order
     Nodes nodes;
     Scratch scratch;  // of large tasks, then two words per chunk for chunk counts
     Input mesh;
@@ -53,12 +53,15 @@ struct Client {
 #include "taskpool/pool/pool.glsl"
 
 float component(vec3 v, uint axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+uint component(uvec3 v, uint axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-PoolUints order_of(uint side) {
-    return PoolUints(side == 0 ? uint64_t(pool.client.order[0]) : uint64_t(pool.client.order[1]));
+Primitives primitives_of(uint side) {
+    return Primitives(side == 0 ? uint64_t(pool.client.primitives[0])
+                                : uint64_t(pool.client.primitives[1]));
 }
 
-#include "structures/bvh/build/planes.glsl"
+#include "structures/bvh/build/ranges.glsl"
+#include "structures/bvh/build/bins.glsl"
 #include "structures/bvh/build/scratch.glsl"
 #include "structures/bvh/build/setup.glsl"
 #include "structures/bvh/build/leaves.glsl"
@@ -72,8 +75,9 @@ void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
         case kPhaseSetup: setup_chunk(begin, end); break;
         case kPhaseCompact: compact_chunk(begin, end); break;
         case kPhaseCount: count_chunk(task, begin, end); break;
-        case kPhaseLeaves: build_leaves(task); break;
-        default: split_chunk(task, phase, step, begin, end);
+        default:
+            if (phase == kPhaseSubtree) pool_progress(task.count);
+            split_chunk(task, phase, step, begin, end);
     }
 }
 
@@ -81,12 +85,11 @@ Next finish_step(inout Task task, uint phase, uint step) {
     switch (phase) {
         case kPhaseSetup: return after_setup(task);
         case kPhaseCompact: return after_compact(task);
-        case kPhasePlanes: return after_planes(task, step);
+        case kPhaseBins: return after_bins(task, step);
         case kPhaseCount: return after_count(task, step);
         case kPhasePartition: return after_partition(task);
         case kPhaseSmall: return after_small(task);
     }
-    pool_progress(task.count);
     return next_end();
 }
 

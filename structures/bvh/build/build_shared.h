@@ -16,23 +16,25 @@ using namespace taskpool::gpu::shared_types;
 // Phases of a task, in the order a task may run through them.
 BVH_CONSTANT uint kPhaseSetup = 0;      // boxes of the triangles, scene bounds, degenerate ones
 BVH_CONSTANT uint kPhaseCompact = 1;    // closes the gaps that degenerate triangles left
-BVH_CONSTANT uint kPhasePlanes = 2;     // SAH over candidate planes of a large range
+BVH_CONSTANT uint kPhaseBins = 2;       // SAH over bins of a large range
 BVH_CONSTANT uint kPhaseCount = 3;      // per chunk, how many primitives go left
 BVH_CONSTANT uint kPhasePartition = 4;  // moves them
-BVH_CONSTANT uint kPhaseSmall = 5;      // chooses a plane and partitions, in one go
-BVH_CONSTANT uint kPhaseLeaves = 6;     // full SAH over a range that fits a subgroup
+BVH_CONSTANT uint kPhaseSmall = 5;      // chooses a split and partitions, in one go
+BVH_CONSTANT uint kPhaseSubtree = 6;    // all that is below a range of few primitives, in one go
 
 BVH_CONSTANT uint kChunkPrimitives = 1024;  // in a chunk, and in a small task at most
-BVH_CONSTANT uint kFewPrimitives = 32;       // up to which one look is enough
+BVH_CONSTANT uint kFewPrimitives = 32;      // so few get another look
+BVH_CONSTANT uint kSubtreePrimitives = 64;  // in a range whose subtree is built in one go, at most
+BVH_CONSTANT uint kBins = 16;               // of an axis, a power of two
 BVH_CONSTANT uint kKeys = 6;                // of a box: see keys_of() in keys.glsl
 
 // A triangle's box.
 struct Primitive {
     vec3 lower;
-    uint valid;  // 0 if the triangle is degenerate
+    uint id;  // of the triangle; kNoPrimitive if it is degenerate
     vec3 upper;
-    uint padding;
 };
+BVH_CONSTANT uint kNoPrimitive = 0xffffffffu;
 
 // The mesh.
 struct BuildInput {
@@ -47,7 +49,7 @@ struct BuildInput {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(Primitive) == 32);
+static_assert(sizeof(Primitive) == 28);
 static_assert(sizeof(BuildInput) == 24);
 }  // namespace structures::bvh
 #endif

@@ -34,6 +34,14 @@ float half_area(KeyBox box) { return is_empty(box) ? 0.0 : half_area(lower_of(bo
 /// The box if every bit of `mask` is set; the empty box if none is.
 KeyBox masked(uint mask, KeyBox box) { return KeyBox(box.low & mask, box.high & mask); }
 
+/// Joins `box` into the other one, if it is to; one instruction a key where that is a masked max().
+void take_in(inout KeyBox into, KeyBox box, bool taken) {
+    [[unroll]] for (uint k = 0; k < 3; ++k) {
+        into.low[k] = taken ? max(into.low[k], box.low[k]) : into.low[k];
+        into.high[k] = taken ? max(into.high[k], box.high[k]) : into.high[k];
+    }
+}
+
 KeyBox[4] no_boxes() {
     return KeyBox[](empty_keys(), empty_keys(), empty_keys(), empty_keys());
 }

@@ -33,7 +33,7 @@ Candidate candidate_split(uint members, KeyBox mine, vec3 center, uint lanes, ou
     }
     box = join(left[0], right[0]);
     const uint count = uint(bitCount(members));
-    Candidate best = Candidate(kInfinity, kNoPlane);
+    Candidate best = Candidate(kInfinity, kNone);
     [[unroll]] for (uint axis = 0; axis < 3; ++axis) {
         const uint right_count = count - left_count[axis];
         precise float cost = half_area(left[axis]) * float(left_count[axis]) +
@@ -46,7 +46,7 @@ Candidate candidate_split(uint members, KeyBox mine, vec3 center, uint lanes, ou
 
 /// The cheapest candidate of a segment's lanes.
 Candidate best_of(uint members, Candidate mine, uint lanes) {
-    Candidate best = Candidate(kInfinity, kNoPlane);
+    Candidate best = Candidate(kInfinity, kNone);
     for (uint lane = 0; lane < lanes; ++lane) {
         const float cost = subgroupShuffle(mine.cost, lane);
         const uint place = subgroupShuffle(mine.place, lane);
@@ -60,8 +60,8 @@ Candidate best_of(uint members, Candidate mine, uint lanes) {
 void build_leaves(Task task) {
     const uint lane = gl_SubgroupInvocationID;
     const bool used = lane < task.count;
-    const uint id = order_of(task.side).at[task.first + min(lane, task.count - 1)];
-    const Primitive primitive = pool.client.primitives.at[id];
+    const Primitive primitive =
+        primitives_of(task.side).at[task.first + min(lane, task.count - 1)];
     const KeyBox keys = keys_of(primitive.lower, primitive.upper);
     precise vec3 center = primitive.lower + primitive.upper;
     const uint lanes_before = (1u << (lane & 31)) - 1;
@@ -79,7 +79,7 @@ void build_leaves(Task task) {
         precise float split_cost = kTraversalCost * half_area(box) + kIntersectionCost * best.cost;
         const bool leaf = count == 1 || (count <= kMaxLeaf && (!kLeafByCost || leaf_cost <= split_cost));
         // Boxes whose areas overflow leave no finite cost: halve by position then.
-        const bool halve = best.place == kNoPlane;
+        const bool halve = best.place == kNone;
         const uint axis = halve ? 0 : best.place / 32, at = halve ? 0 : best.place % 32;
         const float value = axis == 0 ? center.x : axis == 1 ? center.y : center.z;
         // Lane `at` is in this lane's segment, so it offers its centre on the same axis.
@@ -99,5 +99,5 @@ void build_leaves(Task task) {
         }
         pool_spend(2 * task.count + 4);
     }
-    if (used) pool.client.order[0].at[begin + uint(bitCount(members & lanes_before))] = id;
+    if (used) pool.client.order.at[begin + uint(bitCount(members & lanes_before))] = primitive.id;
 }

@@ -1,16 +1,18 @@
 // Memory that the chunks of a large task share. Disjoint ranges of more than kChunkPrimitives begin in
 // different multiples of it, so where a range begins names its scratch: nothing is allocated.
 
-const uint kChildWord = kPlanes * kPlaneWords;  // four boxes of keys: see move_range()
+const uint kAllBins = 3 * kBins;  // of the three axes
+const uint kChildWord = kAllBins * kBinWords;  // four boxes of keys: see move_range()
 const uint kScratchWords = kChildWord + 4 * kKeys;
 
 uint scratch_word(uint first) { return first / kChunkPrimitives * kScratchWords; }
 
-/// Word that belongs to the chunk [begin, end) alone: full chunks have one per multiple of
-/// kChunkPrimitives, and so have shorter ones, the last of their tasks.
+/// First of the kAllBins words that belong to the chunk [begin, end) alone: full chunks have theirs per
+/// multiple of kChunkPrimitives, and so have shorter ones, the last of their tasks.
 uint chunk_word(uint begin, uint end) {
     const uint all = (pool.client.mesh.data.triangle_count / kChunkPrimitives + 1) * kScratchWords;
-    return all + 2 * (begin / kChunkPrimitives) + (end - begin < kChunkPrimitives ? 1 : 0);
+    const uint chunk = 2 * (begin / kChunkPrimitives) + (end - begin < kChunkPrimitives ? 1 : 0);
+    return all + chunk * kAllBins;
 }
 
 void clear_scratch(uint first) {
@@ -43,51 +45,60 @@ void fetch_boxes(uint first, out KeyBox boxes[4]) {
     }
 }
 
-/// Exclusive scan over the chunk words of a range; returns the sum.
-uint scan_chunks(uint first, uint count) {
+/// Exclusive scan over the chunks of a range, of the sum of each one's `count` words from `from` on;
+/// leaves it in their first words and returns the sum of all.
+uint scan_chunks(uint first, uint count, uint from, uint words) {
     uint sum = 0;
     for (uint i = 0; i * kChunkPrimitives < count; i += gl_SubgroupSize) {
         const uint chunk = i + gl_SubgroupInvocationID;
         const bool used = chunk * kChunkPrimitives < count;
         const uint begin = first + chunk * kChunkPrimitives;
         const uint word = chunk_word(begin, min(begin + kChunkPrimitives, first + count));
-        const uint mine = used ? pool.client.scratch.words[word] : 0;
+        uint mine = 0;
+        for (uint k = 0; k < words; ++k)
+            mine += used ? pool.client.scratch.words[word + from + k] : 0;
         const uint before = subgroupExclusiveAdd(mine);
         if (used) pool.client.scratch.words[word] = sum + before;
         sum += subgroupAdd(mine);
-        pool_spend(1);
+        pool_spend(words + 1);
     }
     pool_order_lanes();
     return sum;
 }
 
-/// Joins this subgroup's planes into the task's.
-void flush_planes(uint first, Plane planes[kRows]) {
+/// Joins this subgroup's bins into the task's. A chunk seldom extends them: look before the atomics.
+void flush_bins(uint first, Bin bins[kRows]) {
     [[unroll]] for (uint row = 0; row < kRows; ++row) {
-        const uint id = row * gl_SubgroupSize + gl_SubgroupInvocationID;
-        if (id >= kPlanes) break;
-        const uint at = scratch_word(first) + id * kPlaneWords;
-        [[unroll]] for (uint k = 0; k < 3; ++k) {
-            atomicMax(pool.client.scratch.words[at + k], planes[row].left.low[k]);
-            atomicMax(pool.client.scratch.words[at + 3 + k], planes[row].left.high[k]);
-            atomicMax(pool.client.scratch.words[at + 6 + k], planes[row].right.low[k]);
-            atomicMax(pool.client.scratch.words[at + 9 + k], planes[row].right.high[k]);
+        const uint bin = bin_of_row(row);
+        if (bin >= kAllBins || bins[row].count == 0) continue;
+        const uint at = scratch_word(first) + bin;
+        [[unroll]] for (uint k = 0; k < kKeys; ++k) {
+            const uint key = k < 3 ? bins[row].box.low[k] : bins[row].box.high[k - 3];
+            const uint word = at + k * kAllBins;
+            if (key > atomicLoad(pool.client.scratch.words[word], gl_ScopeDevice,
+                                 gl_StorageSemanticsNone, gl_SemanticsRelaxed))
+                atomicMax(pool.client.scratch.words[word], key);
         }
-        atomicAdd(pool.client.scratch.words[at + 12], planes[row].left_count);
+        atomicAdd(pool.client.scratch.words[at + kKeys * kAllBins], bins[row].count);
     }
 }
 
-/// Fills the planes' boxes and counts with the task's.
-void fetch_planes(uint first, inout Plane planes[kRows]) {
+/// Tells how many primitives of the chunk [begin, end) are in each bin.
+void tell_counts(uint begin, uint end, Bin bins[kRows]) {
     [[unroll]] for (uint row = 0; row < kRows; ++row) {
-        const uint id = min(row * gl_SubgroupSize + gl_SubgroupInvocationID, kPlanes - 1);
-        const uint at = scratch_word(first) + id * kPlaneWords;
-        [[unroll]] for (uint k = 0; k < 3; ++k) {
-            planes[row].left.low[k] = pool.client.scratch.words[at + k];
-            planes[row].left.high[k] = pool.client.scratch.words[at + 3 + k];
-            planes[row].right.low[k] = pool.client.scratch.words[at + 6 + k];
-            planes[row].right.high[k] = pool.client.scratch.words[at + 9 + k];
-        }
-        planes[row].left_count = pool.client.scratch.words[at + 12];
+        const uint bin = bin_of_row(row);
+        if (bin < kAllBins) pool.client.scratch.words[chunk_word(begin, end) + bin] = bins[row].count;
+    }
+}
+
+/// The task's bins.
+void fetch_bins(uint first, out Bin bins[kRows]) {
+    [[unroll]] for (uint row = 0; row < kRows; ++row) {
+        const uint at = scratch_word(first) + min(bin_of_row(row), kAllBins - 1);
+        uint keys[kKeys];
+        [[unroll]] for (uint k = 0; k < kKeys; ++k)
+            keys[k] = pool.client.scratch.words[at + k * kAllBins];
+        bins[row].box = KeyBox(uvec3(keys[0], keys[1], keys[2]), uvec3(keys[3], keys[4], keys[5]));
+        bins[row].count = pool.client.scratch.words[at + kKeys * kAllBins];
     }
 }

@@ -24,8 +24,8 @@ void setup_chunk(uint begin, uint end) {
                        c = mesh.positions.at[corners.z];
             valid = !degenerate(a, b, c);
             const vec3 lower = min(min(a, b), c), upper = max(max(a, b), c);
-            pool.client.primitives.at[mine] = Primitive(lower, valid ? 1 : 0, upper, 0);
-            pool.client.order[0].at[mine] = mine;
+            pool.client.primitives[0].at[mine] = 
+                Primitive(lower, valid ? mine : kNoPrimitive, upper);
             precise vec3 center = lower + upper;
             if (valid) {
                 boxes[0] = join(boxes[0], keys_of(lower, upper));
@@ -40,14 +40,16 @@ void setup_chunk(uint begin, uint end) {
     pool_spend(kChunkPrimitives / gl_SubgroupSize + kReduceIterations);
 }
 
-/// Lists the valid primitives of a chunk in order[0], from where the scanned counts say.
+/// Moves the valid primitives of a chunk to the other side, from where the scanned counts say.
 void compact_chunk(uint begin, uint end) {
     uint target = pool.client.scratch.words[chunk_word(begin, end)];
     for (uint i = begin; i < end; i += gl_SubgroupSize) {
         const uint mine = i + gl_SubgroupInvocationID;
-        const bool valid = mine < end && pool.client.primitives.at[min(mine, end - 1)].valid != 0;
+        const Primitive primitive = pool.client.primitives[0].at[min(mine, end - 1)];
+        const bool valid = mine < end && primitive.id != kNoPrimitive;
         const uvec4 ballot = subgroupBallot(valid);
-        if (valid) pool.client.order[0].at[target + subgroupBallotExclusiveBitCount(ballot)] = mine;
+        if (valid)
+            pool.client.primitives[1].at[target + subgroupBallotExclusiveBitCount(ballot)] = primitive;
         target += subgroupBallotBitCount(ballot);
     }
     pool_spend(kChunkPrimitives / gl_SubgroupSize);
