@@ -71,11 +71,6 @@ vec2 range_of(vec3 f) {  // over the rectangle
     return vec2(least.x + least.y, most.x + most.y) + f.z;
 }
 
-float most_of(vec3 f, uint section) {
-    const vec2 most = max(f.xy * section_lower[section], f.xy * section_upper[section]);
-    return most.x + most.y + f.z;
-}
-
 // Rectangle of u and v that holds every point the triangle may occlude, corners off by the bound
 // above; the whole plane if a corner is not in front of the light.
 void footprint(vec3 a, vec3 b, vec3 c, out vec2 lower, out vec2 upper) {
@@ -180,10 +175,8 @@ uint classify(vec3 a, vec3 b, vec3 c, uint live, out Candidate candidate) {
         footprint(a, b, c, lower, upper);
         candidate.sections = 0;
         [[unroll]] for (uint s = 0; s < kSections; ++s) {
-            if (any(lessThan(upper, section_lower[s])) || any(greaterThan(lower, section_upper[s])))
-                continue;
-            if (!(most_of(candidate.edge_ab, s) < -error.x || most_of(candidate.edge_bc, s) < -error.y ||
-                  most_of(candidate.edge_ca, s) < -error.z))
+            if (!(any(lessThan(upper, section_lower[s])) ||
+                  any(greaterThan(lower, section_upper[s]))))
                 candidate.sections |= 1u << (s * kSectionSlots);
         }
         candidate.sections &= live;
