@@ -15,6 +15,9 @@ namespace {
 
 using namespace taskpool;
 
+constexpr std::uint32_t kLoops = 64;  // see ClientSpec::loops
+constexpr std::uint32_t kTurnLoops =
+    80;  // that one turn of the pool, or of a subtree, may pass over
 constexpr std::uint32_t kDeterministicLeafRange = 8;
 constexpr std::uint32_t kMaxLeafRange = 32;  // a set of lanes is one word there
 
@@ -52,14 +55,17 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
     const std::uint32_t lanes = device.subgroup_size();
     const std::uint32_t axis_lanes = std::min(lanes, 8u);
     pool::ClientSpec spec;
-    spec.loops = 64;
+    spec.loops = kLoops;
     spec.task_bytes = sizeof(Task);
     // A small task's look and its move, or a subtree of one primitive here, the others there; and
     // the transition.
     const std::uint32_t groups = kChunkPrimitives / lanes,
                         leaf_range = leaf_range_of(lanes, config);
     const std::uint32_t small = kChunkPrimitives / axis_lanes + 4 * groups,
-                        subtree = 40 * kSubtreePrimitives + 2 * (leaf_range + 2) * (leaf_range + 2);
+                        turns =
+                            2 * kSubtreePrimitives * (device.info().loop_limit ? kTurnLoops : 1),
+                        subtree = 40 * kSubtreePrimitives +
+                                  2 * (leaf_range + 2) * (leaf_range + 2) + turns;
     spec.chunk_iterations = std::max(small, subtree) + 1024;
     spec.constants = {
         {16, axis_lanes},

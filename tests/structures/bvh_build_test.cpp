@@ -152,7 +152,7 @@ TEST_F(BvhGpu, IsTheSameHoweverItIsScheduled) {
             EXPECT_EQ(fingerprint(build(mesh, config)), expected);
         }
     Config hasty;
-    hasty.pool.iteration_budget = 20'000;
+    hasty.pool.iteration_budget = 60'000;
     EXPECT_EQ(fingerprint(build(mesh, hasty)), expected);
 }
 

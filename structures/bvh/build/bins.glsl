@@ -77,16 +77,17 @@ void pass_primitives(Task task, uint begin, uint end, inout Bin bins[kRows]) {
                                         subgroupShuffle(box.high, first + k));
             }
             [[unroll]] for (uint set = 0; set < kSets; ++set) {
-                if (!wanted[set]) continue;
-                [[unroll]] for (uint slot = 0; slot < kSlots; ++slot) {
-                    const uint bin = pattern[set] + (slot << 8 * min(axis_of(set), 3u));
-                    Bin taking = bins[set * kSlots + slot];
-                    [[unroll]] for (uint k = 0; k < kAxisLanes; ++k) {
-                        const bool taken = (passing[k] & mask[set]) == bin;
-                        take_in(taking.box, passing_box[k], taken);
-                        taking.count += taken ? 1 : 0;
+                if (wanted[set]) {
+                    [[unroll]] for (uint slot = 0; slot < kSlots; ++slot) {
+                        const uint bin = pattern[set] + (slot << 8 * min(axis_of(set), 3u));
+                        Bin taking = bins[set * kSlots + slot];
+                        [[unroll]] for (uint k = 0; k < kAxisLanes; ++k) {
+                            const bool taken = (passing[k] & mask[set]) == bin;
+                            take_in(taking.box, passing_box[k], taken);
+                            taking.count += taken ? 1 : 0;
+                        }
+                        bins[set * kSlots + slot] = taking;
                     }
-                    bins[set * kSlots + slot] = taking;
                 }
             }
         }
@@ -120,40 +121,41 @@ void best_splits(uint axes, Bin bins[kRows], out vec3 cost, out uvec3 cut) {
     cut = uvec3(kNone);
     [[unroll]] for (uint set = 0; set < kSets; ++set) {
         // An axis that nobody looks at has empty bins.
-        if ((axes >> set * (kLanes / kAxisLanes) & (1u << kLanes / kAxisLanes) - 1) == 0) continue;
-        Bin own = bins[set * kSlots];
-        [[unroll]] for (uint slot = 1; slot < kSlots; ++slot) own = join(own, bins[set * kSlots + slot]);
-        Bin left = scan_lanes(own, true);
-        const Bin after = scan_lanes(own, false);
-        float best = kInfinity;
-        uint best_bin = kNone;
-        [[unroll]] for (uint slot = 0; slot < kSlots; ++slot) {
-            left = join(left, bins[set * kSlots + slot]);
-            Bin right = after;
-            [[unroll]] for (uint other = slot + 1; other < kSlots; ++other)
-                right = join(right, bins[set * kSlots + other]);
-            precise float mine = half_area(left.box) * float(left.count) +
-                                 half_area(right.box) * float(right.count);
-            if (left.count > 0 && right.count > 0 && mine < best) {
-                best = mine;
-                best_bin = axis_lane() * kSlots + slot;
+        if ((axes >> set * (kLanes / kAxisLanes) & (1u << kLanes / kAxisLanes) - 1) != 0) {
+            Bin own = bins[set * kSlots];
+            [[unroll]] for (uint slot = 1; slot < kSlots; ++slot) own = join(own, bins[set * kSlots + slot]);
+            Bin left = scan_lanes(own, true);
+            const Bin after = scan_lanes(own, false);
+            float best = kInfinity;
+            uint best_bin = kNone;
+            [[unroll]] for (uint slot = 0; slot < kSlots; ++slot) {
+                left = join(left, bins[set * kSlots + slot]);
+                Bin right = after;
+                [[unroll]] for (uint other = slot + 1; other < kSlots; ++other)
+                    right = join(right, bins[set * kSlots + other]);
+                precise float mine = half_area(left.box) * float(left.count) +
+                                     half_area(right.box) * float(right.count);
+                if (left.count > 0 && right.count > 0 && mine < best) {
+                    best = mine;
+                    best_bin = axis_lane() * kSlots + slot;
+                }
             }
-        }
-        [[unroll]] for (uint apart = kAxisLanes / 2; apart > 0; apart /= 2) {
-            const float other = subgroupShuffleXor(best, apart);
-            const uint bin = subgroupShuffleXor(best_bin, apart);
-            const bool take = other < best || (other == best && bin < best_bin);
-            best = take ? other : best;
-            best_bin = take ? bin : best_bin;
-        }
-        const uint groups = kLanes / kAxisLanes;
-        [[unroll]] for (uint axis = 0; axis < 3; ++axis) {
-            const uint lane = axis % groups * kAxisLanes;
-            const float axis_best = subgroupShuffle(best, lane);
-            const uint axis_bin = subgroupShuffle(best_bin, lane);
-            if (axis / groups == set) {
-                cost[axis] = axis_best;
-                cut[axis] = axis_bin;
+            [[unroll]] for (uint apart = kAxisLanes / 2; apart > 0; apart /= 2) {
+                const float other = subgroupShuffleXor(best, apart);
+                const uint bin = subgroupShuffleXor(best_bin, apart);
+                const bool take = other < best || (other == best && bin < best_bin);
+                best = take ? other : best;
+                best_bin = take ? bin : best_bin;
+            }
+            const uint groups = kLanes / kAxisLanes;
+            [[unroll]] for (uint axis = 0; axis < 3; ++axis) {
+                const uint lane = axis % groups * kAxisLanes;
+                const float axis_best = subgroupShuffle(best, lane);
+                const uint axis_bin = subgroupShuffle(best_bin, lane);
+                if (axis / groups == set) {
+                    cost[axis] = axis_best;
+                    cut[axis] = axis_bin;
+                }
             }
         }
     }

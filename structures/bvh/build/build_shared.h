@@ -24,7 +24,7 @@ BVH_CONSTANT uint kPhaseSubtree = 6;    // all that is below a range of few prim
 
 BVH_CONSTANT uint kChunkPrimitives = 1024;  // in a chunk, and in a small task at most
 BVH_CONSTANT uint kFewPrimitives = 32;      // so few get another look
-BVH_CONSTANT uint kSubtreePrimitives = 64;  // in a range whose subtree is built in one go, at most
+BVH_CONSTANT uint kSubtreePrimitives = 48;  // in a range whose subtree is built in one go, at most
 BVH_CONSTANT uint kBins = 16;               // of an axis, a power of two
 BVH_CONSTANT uint kKeys = 6;                // of a box: see keys_of() in keys.glsl
 

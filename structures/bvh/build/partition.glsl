@@ -159,6 +159,6 @@ void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
             begin = task.first;
             end = task.first + task.count;
         }
-        pool_spend(2);
+        pool_spend(kTurnIterations);  // as the loops that this turn passes over count, too
     }
 }

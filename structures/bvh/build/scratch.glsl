@@ -45,7 +45,7 @@ void fetch_boxes(uint first, out KeyBox boxes[4]) {
     }
 }
 
-/// Exclusive scan over the chunks of a range, of the sum of each one's `count` words from `from` on;
+/// Exclusive scan over the chunks of a range, of the sum of each one's `words` words from `from` on;
 /// leaves it in their first words and returns the sum of all.
 uint scan_chunks(uint first, uint count, uint from, uint words) {
     uint sum = 0;
@@ -55,12 +55,12 @@ uint scan_chunks(uint first, uint count, uint from, uint words) {
         const uint begin = first + chunk * kChunkPrimitives;
         const uint word = chunk_word(begin, min(begin + kChunkPrimitives, first + count));
         uint mine = 0;
-        for (uint k = 0; k < words; ++k)
-            mine += used ? pool.client.scratch.words[word + from + k] : 0;
+        [[unroll]] for (uint k = 0; k < kBins; ++k)
+            mine += used && k < words ? pool.client.scratch.words[word + from + k] : 0;
         const uint before = subgroupExclusiveAdd(mine);
         if (used) pool.client.scratch.words[word] = sum + before;
         sum += subgroupAdd(mine);
-        pool_spend(words + 1);
+        pool_spend(1);
     }
     pool_order_lanes();
     return sum;
@@ -70,16 +70,17 @@ uint scan_chunks(uint first, uint count, uint from, uint words) {
 void flush_bins(uint first, Bin bins[kRows]) {
     [[unroll]] for (uint row = 0; row < kRows; ++row) {
         const uint bin = bin_of_row(row);
-        if (bin >= kAllBins || bins[row].count == 0) continue;
-        const uint at = scratch_word(first) + bin;
-        [[unroll]] for (uint k = 0; k < kKeys; ++k) {
-            const uint key = k < 3 ? bins[row].box.low[k] : bins[row].box.high[k - 3];
-            const uint word = at + k * kAllBins;
-            if (key > atomicLoad(pool.client.scratch.words[word], gl_ScopeDevice,
-                                 gl_StorageSemanticsNone, gl_SemanticsRelaxed))
-                atomicMax(pool.client.scratch.words[word], key);
+        if (bin < kAllBins && bins[row].count > 0) {
+            const uint at = scratch_word(first) + bin;
+            [[unroll]] for (uint k = 0; k < kKeys; ++k) {
+                const uint key = k < 3 ? bins[row].box.low[k] : bins[row].box.high[k - 3];
+                const uint word = at + k * kAllBins;
+                if (key > atomicLoad(pool.client.scratch.words[word], gl_ScopeDevice,
+                                     gl_StorageSemanticsNone, gl_SemanticsRelaxed))
+                    atomicMax(pool.client.scratch.words[word], key);
+            }
+            atomicAdd(pool.client.scratch.words[at + kKeys * kAllBins], bins[row].count);
         }
-        atomicAdd(pool.client.scratch.words[at + kKeys * kAllBins], bins[row].count);
     }
 }
 
