@@ -1,7 +1,7 @@
 // Packets: a subgroup's segments, neighbours on the screen, share one stack and walk together
 // wherever one of them has to go. Lanes load a node's children once and pass them round; a packet
-// that runs out of stack or steps, or meets a triangle
-// that double precision cannot tell, is left to the per-point walk.
+// that runs out of stack or steps is left to the per-point walk, and so are points that meet a
+// triangle that double precision cannot tell.
 #ifndef SHADOWS_BVH_PACKET_GLSL
 #define SHADOWS_BVH_PACKET_GLSL
 #include "shadows/bvh/any_hit.glsl"

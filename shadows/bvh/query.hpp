@@ -12,7 +12,8 @@
 //   packet  a subgroup's segments share one stack
 //   beam    a subgroup owns a tile of 16 x 16 points and walks the tree with the tile's frustum
 // Points of beams that meet too many triangles go on in packets, in the same kernel. What packets
-// cannot finish within their limits is left to a per-point walk, recorded behind them as an
+// cannot finish within their limits, or without the last resort of the exact test
+// (occludes_exactly), is left to a per-point walk, recorded behind them as an
 // indirect dispatch; nothing is dropped, and the status counts what happened.
 #pragma once
 

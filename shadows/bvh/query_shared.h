@@ -20,7 +20,7 @@ struct QueryStatus {
     uint stack_full;       // traversals given up because their stack was full
     uint step_limit;       // traversals given up because they took too many steps
     uint packet_tiles;     // tiles some of whose points went on in packets
-    uint deferred_points;  // points left to the per-point walk for one of these reasons
+    uint deferred_points;  // points left to the per-point walk: see above, or exact_decisions
     uint incomplete;       // points that even the per-point walk did not finish: must be 0
     uint exact_tests;      // with statistics: point-triangle pairs decided by the exact test
     uint groups;           // with statistics: groups of points that walked the tree

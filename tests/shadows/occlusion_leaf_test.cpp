@@ -184,6 +184,35 @@ TEST_F(OcclusionLeaf, ScalesBeyondSinglePrecision) {
     }
 }
 
+// Triangles around the origin that are smaller than the rounding of the distance to points and
+// light, which lie in line with them as well as rounding allows.
+TEST_F(OcclusionLeaf, TrianglesSmallerThanTheirRounding) {
+    const std::uint32_t seed = std::random_device{}();
+    std::printf("seed %u\n", seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    const auto vector = [&] {
+        const float x = unit(random), y = unit(random);
+        return glm::vec3(x, y, unit(random));
+    };
+    for (int exponent : {-18, -24, -30, -36}) {
+        SCOPED_TRACE(exponent);
+        Scene scene;
+        for (int i = 0; i < 40; ++i) {
+            const float size = std::ldexp(1.f, exponent);
+            const glm::vec3 a = size * vector(), b = size * vector();
+            add_triangle(scene.mesh, a, b, size * vector());
+        }
+        scene.light = {Light::Type::point, vector() + glm::vec3(0, 2, 0)};
+        for (int i = 0; i < 512; ++i) {
+            const glm::vec3 on = scene.mesh.positions[i % scene.mesh.positions.size()];
+            scene.points.push_back(on + (0.5f + i / 1024.f) * (on - scene.light.vector));
+        }
+        const Result result = check(scene);
+        EXPECT_GT(result["fp64_decisions"], 0);
+    }
+}
+
 /// Points behind a fan of triangles around a hub, as exactly as rounding allows on the lines from
 /// the light through the fan's inner edges: all in shadow.
 Scene fan() {

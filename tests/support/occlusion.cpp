@@ -21,6 +21,15 @@ using Exact = boost::multiprecision::number<
 
 /// Sign of det[q - w x, y - x, z - x].
 int side(glm::vec3 q, int w, glm::vec3 x, glm::vec3 y, glm::vec3 z) {
+    // Most are clear: a double-precision determinant is off by less than 16 * 2^-53 of its terms.
+    const glm::dvec3 origin(x), ed = glm::dvec3(y) - origin, fd = glm::dvec3(z) - origin,
+                                gd = glm::dvec3(q) - double(w) * origin;
+    const glm::dvec3 left(ed.y * fd.z, ed.z * fd.x, ed.x * fd.y),
+        right(ed.z * fd.y, ed.x * fd.z, ed.y * fd.x);
+    const double quick = glm::dot(gd, left - right);
+    const double size = glm::dot(glm::abs(gd), glm::abs(left) + glm::abs(right));
+    if (std::abs(quick) > size * 0x1p-49) return quick > 0 ? 1 : -1;
+
     Exact e[3], f[3], g[3];
     for (int i = 0; i < 3; ++i) {
         e[i] = Exact(y[i]) - Exact(x[i]);

@@ -14,8 +14,8 @@ enum class Decision { no, yes, unsure };
 Decision occludes_filtered(glm::vec3 p, const structures::geometry::Light& light, glm::vec3 a,
                            glm::vec3 b, glm::vec3 c);
 
-/// What shadows/occlusion.glsl promises, in numbers of 1024 bits, which hold every intermediate
-/// result for floats of any size.
+/// What shadows/occlusion.glsl promises: signs that double precision does not vouch for are taken in
+/// numbers of 1024 bits, which hold every intermediate result for floats of any size.
 bool occludes_exactly(glm::vec3 p, const structures::geometry::Light& light, glm::vec3 a,
                       glm::vec3 b, glm::vec3 c);
 
