@@ -1,5 +1,6 @@
 // A tangle of pipes in a box: axis-aligned runs joined by round elbows, one pipe at most in each
 // cell of a grid, so that they pass close by but never through each other.
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -30,8 +31,9 @@ std::span<const Parameter> parameters() {
 
 constexpr int kMaxLength = 60;  // cells of one pipe
 
-/// Elbows are as round along as the pipe is around.
-std::size_t elbow_steps(std::size_t sides) { return sides / 4 + 1; }
+/// Elbows are as round along as the pipe is around, and turn by 45 degrees at most at a time: the
+/// frame carried along a tube is lost where its axis turns by 90.
+std::size_t elbow_steps(std::size_t sides) { return std::max<std::size_t>(2, sides / 4 + 1); }
 
 /// Cubic grid of free and taken cells.
 class Grid {

@@ -57,6 +57,7 @@ Verdicts Truth::judge(const PointArrays& points, const JudgeOptions& options) co
     };
     const unsigned threads =
         options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+    if (options.progress && !options.progress(0)) stopped = true;
     std::vector<Effort> efforts(threads);
     {
         std::vector<std::jthread> helpers;

@@ -70,8 +70,8 @@ struct Verdicts {
 
 struct JudgeOptions {
     unsigned threads = 0;  ///< 0: all cores
-    /// Called now and then, from one thread at a time, with the fraction done; returns false to
-    /// stop (judge() then throws std::runtime_error).
+    /// Called at the start and now and then, from one thread at a time, with the fraction done;
+    /// returns false to stop (judge() then throws std::runtime_error).
     std::function<bool(double)> progress;
 };
 
