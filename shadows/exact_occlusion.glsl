@@ -97,7 +97,7 @@ void add_product(float x, float y, float z) {
 
 int side_exactly(vec3 q, float w, vec3 x, vec3 y, vec3 z) {
     [[unroll]] for (uint i = 0; i < kSums; ++i) sums[i] = 0.0LF;
-    exact_loops += 16;
+    exact_loops += 17;
     // d . (x x y): with d = q for each of the three pairs, then with d = -w z.
     for (uint pair = 0; pair < 4; ++pair) {
         vec3 d = pair < 3 ? q : -w * z;

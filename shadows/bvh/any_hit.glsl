@@ -1,17 +1,17 @@
 // Any-hit query of a wide BVH, one segment per lane.
 //
 //     BvhWalk walk = bvh_walk_begin(step_limit);
-//     bool hit = bvh_occluded(tree, segment, own_primitive, walk);
+//     bool hit = bvh_occluded(tree, segment, own_primitive, false, walk);
 //     // walk.end says why the traversal ended; only kEndFinished makes `hit == false` an answer
 //
-// Needs the constants kStackLimit and kLoopsAreCut (see query.glsl). Each stack entry is a node's inner
-// children that are still to be visited, so that the stack is no deeper than the tree.
+// Needs the constants kStackLimit and kLoopsAreCut (see query.glsl). Each stack entry is a node's
+// inner children that are still to be visited, so that the stack is no deeper than the tree.
 #ifndef SHADOWS_BVH_ANY_HIT_GLSL
 #define SHADOWS_BVH_ANY_HIT_GLSL
 #include "shadows/bvh/leaf_variants.glsl"
 #include "structures/bvh/wide/wide_node.glsl"
 
-const uint kEndFinished = 0u, kEndStackFull = 1u, kEndStepLimit = 2u;
+const uint kEndFinished = 0u, kEndStackFull = 1u, kEndStepLimit = 2u, kEndUnsure = 3u;
 
 struct BvhView {
     WideHeaderRef header;
@@ -68,14 +68,17 @@ bool meets(SlabTest test, uvec4 child) {
     return first <= last && child.w != kEmptyLink;
 }
 
-bool bvh_occluded(BvhView view, Segment segment, uint own_primitive, inout BvhWalk walk) {
+// With `last_resort`, whatever it takes; without, a walk that hits nothing ends as kEndUnsure if it
+// has met a triangle that double precision cannot tell.
+bool bvh_occluded(BvhView view, Segment segment, uint own_primitive, bool last_resort,
+                  inout BvhWalk walk) {
     const WideHeader header = view.header.header;
     if (header.node_count == 0) return false;
     const SlabTest test = slab_test(header, segment);
     uint stack[kLaneStack];
     uint depth = 0;
     uint entry = 1u;  // the root as the only child of a node that starts at 0
-    bool hit = false;
+    bool hit = false, unsure = false;
     while (true) {
         if ((entry & 0xffu) == 0) {
             if (depth == 0) break;
@@ -107,12 +110,21 @@ bool bvh_occluded(BvhView view, Segment segment, uint own_primitive, inout BvhWa
                     triangle = leaf_first(link);
                     last = triangle + leaf_count(link);
                 }
-                walk.steps -= min(walk.steps, 1u + (kLoopsAreCut ? take_exact_loops() : 0u));
+                // Lanes may loop in turns.
+                const uint loops = kLoopsAreCut ? kLanes * take_exact_loops() : 0u;
+                walk.steps -= min(walk.steps, 1u + loops);
                 ++walk.triangles;
                 const WideTriangle t = view.triangles.at[triangle++];
-                if (t.primitive != own_primitive && leaf_occludes(segment, t.a, t.b, t.c)) {
-                    hit = true;
-                    break;
+                if (t.primitive != own_primitive) {
+                    const int answer = leaf_occludes(segment, t.a, t.b, t.c);
+                    hit = answer == 1;
+                    if (answer == kUnsure) {
+                        if (last_resort)
+                            hit = occludes_exactly(segment, t.a, t.b, t.c);
+                        else
+                            unsure = true;
+                    }
+                    if (hit) break;
                 }
             }
             if (hit) break;
@@ -128,6 +140,7 @@ bool bvh_occluded(BvhView view, Segment segment, uint own_primitive, inout BvhWa
             entry = base << 8 | inner;
         }
     }
+    if (!hit && unsure && walk.end == kEndFinished) walk.end = kEndUnsure;
     return hit;
 }
 

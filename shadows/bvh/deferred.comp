@@ -11,7 +11,7 @@ void main() {
     if ((push.deferred.at[word] & bit) == 0) return;
     BvhView view = BvhView(push.header, push.nodes, push.triangles);
     BvhWalk walk = bvh_walk_begin(kStepLimit);
-    if (bvh_occluded(view, segment_of(point), primitive_of(point), walk))
+    if (bvh_occluded(view, segment_of(point), primitive_of(point), true, walk))
         atomicAnd(push.visible.at[word], ~bit);
     else if (walk.end != kEndFinished)
         atomicAdd(push.status.at.incomplete, 1u);

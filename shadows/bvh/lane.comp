@@ -16,7 +16,7 @@ void main() {
             const uint primitive = primitive_of(point);
             BvhWalk walk = bvh_walk_begin(steps);
             if (primitive != kNoPrimitive) {
-                if (bvh_occluded(view, segment_of(point), primitive, walk)) occluded |= 1u << k;
+                if (bvh_occluded(view, segment_of(point), primitive, false, walk)) occluded |= 1u << k;
                 if (walk.end != kEndFinished) deferred |= 1u << k;
                 stack_full += walk.end == kEndStackFull ? 1 : 0;
                 step_limit += walk.end == kEndStepLimit ? 1 : 0;

@@ -1,8 +1,7 @@
 // What the leaves of single segments ask: the exact test, or one of the shortcuts that others take,
 // to see what they cost in correctness. Only the exact test counts as an answer.
 //
-//     if (leaf_occludes(segment, a, b, c)) ...
-//     int hit = leaf_occludes_quickly(segment, a, b, c);   // 1, 0, or kUnsure: ask again the other way
+//     int hit = leaf_occludes(segment, a, b, c);   // 1, 0, or kUnsure: left to occludes_exactly()
 //
 // The shortcuts decide as their authors wrote them down, in plain floating point.
 #ifndef SHADOWS_BVH_LEAF_VARIANTS_GLSL
@@ -72,17 +71,11 @@ bool occludes_plain_double(Segment s, vec3 a, vec3 b, vec3 c) {
     return (here < 0.0LF && there > 0.0LF) || (here > 0.0LF && there < 0.0LF);
 }
 
-int leaf_occludes_quickly(Segment s, vec3 a, vec3 b, vec3 c) {
+int leaf_occludes(Segment s, vec3 a, vec3 b, vec3 c) {
     if (kLeaf == kLeafWatertight) return int(occludes_watertight(s, a, b, c));
     if (kLeaf == kLeafMoellerTrumbore) return int(occludes_moeller_trumbore(s, a, b, c));
     if (kLeaf == kLeafDouble) return int(occludes_plain_double(s, a, b, c));
     return occludes_quickly(s, a, b, c);
-}
-
-bool leaf_occludes(Segment s, vec3 a, vec3 b, vec3 c) {
-    const int quick = leaf_occludes_quickly(s, a, b, c);
-    if (quick != kUnsure) return quick == 1;
-    return occludes_exactly(s, a, b, c);
 }
 
 #endif
