@@ -7,6 +7,7 @@
 #include <random>
 
 #include "structures/bvh/reference.hpp"
+#include "tests/structures/meshes.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/occlusion.hpp"
 
@@ -19,6 +20,8 @@ using shadows::bvh::QueryKind;
 using shadows::bvh::QueryStatus;
 using structures::geometry::Light;
 using structures::geometry::TriangleMesh;
+using tests::add_box;
+using tests::add_triangle;
 using tests::Answer;
 
 constexpr QueryKind kKinds[] = {QueryKind::lane, QueryKind::packet, QueryKind::beam};
@@ -50,12 +53,6 @@ void set_point(Scene& scene, std::uint32_t x, std::uint32_t y, glm::vec3 p,
     scene.points.y[i] = p.y;
     scene.points.z[i] = p.z;
     scene.points.primitive[i] = primitive;
-}
-
-void add_triangle(TriangleMesh& mesh, glm::vec3 a, glm::vec3 b, glm::vec3 c) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), {a, b, c});
-    mesh.triangles.emplace_back(first, first + 1, first + 2);
 }
 
 struct Result {
@@ -257,19 +254,6 @@ TEST_F(BvhShadow, NoLeakThroughSharedEdgesAndVertices) {
         const Result result = run(scene, {});
         for (std::uint32_t i = 0; i < 7 * 512; ++i)
             EXPECT_FALSE(result.visible.lit(point_index(i % 64, i / 64, 64))) << "point " << i;
-    }
-}
-
-void add_box(TriangleMesh& mesh, glm::vec3 lower, glm::vec3 upper) {
-    const auto corner = [&](int i) {
-        return glm::vec3(i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y,
-                         i & 4 ? upper.z : lower.z);
-    };
-    const int quads[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
-                             {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
-    for (const auto& q : quads) {
-        add_triangle(mesh, corner(q[0]), corner(q[1]), corner(q[2]));
-        add_triangle(mesh, corner(q[0]), corner(q[2]), corner(q[3]));
     }
 }
 

@@ -12,6 +12,7 @@
 #include "experiments/scenes/generators.hpp"
 #include "shadows/izb/query.hpp"
 #include "shadows/method.hpp"
+#include "tests/structures/meshes.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/occlusion.hpp"
 
@@ -23,6 +24,8 @@ using shadows::izb::QueryConfig;
 using shadows::izb::QueryResult;
 using structures::geometry::Light;
 using structures::geometry::TriangleMesh;
+using tests::add_box;
+using tests::add_triangle;
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -46,25 +49,6 @@ struct Random {
     float unit() { return std::uniform_real_distribution<float>(0, 1)(engine); }
     glm::vec3 in_cube() { return {unit() * 2 - 1, unit() * 2 - 1, unit() * 2 - 1}; }
 };
-
-void add_triangle(TriangleMesh& mesh, glm::vec3 a, glm::vec3 b, glm::vec3 c) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), {a, b, c});
-    mesh.triangles.emplace_back(first, first + 1, first + 2);
-}
-
-void add_box(TriangleMesh& mesh, glm::vec3 lower, glm::vec3 upper) {
-    const auto corner = [&](int i) {
-        return glm::vec3(i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y,
-                         i & 4 ? upper.z : lower.z);
-    };
-    const int quads[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
-                             {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
-    for (const auto& q : quads) {
-        add_triangle(mesh, corner(q[0]), corner(q[1]), corner(q[2]));
-        add_triangle(mesh, corner(q[0]), corner(q[2]), corner(q[3]));
-    }
-}
 
 /// Room for `count` points, none of which there is yet.
 void no_points(Scene& scene, std::uint32_t count) {

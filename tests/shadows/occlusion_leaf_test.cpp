@@ -10,6 +10,7 @@
 
 #include "shadows/method.hpp"
 #include "structures/parameters.hpp"
+#include "tests/structures/meshes.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/occlusion.hpp"
 
@@ -21,6 +22,7 @@ using structures::Settings;
 using structures::Value;
 using structures::geometry::Light;
 using structures::geometry::TriangleMesh;
+using tests::add_triangle;
 
 using Given = std::map<std::string, Value>;
 
@@ -29,12 +31,6 @@ struct Scene {
     Light light;
     std::vector<glm::vec3> points;  ///< on no triangle
 };
-
-void add_triangle(TriangleMesh& mesh, glm::vec3 a, glm::vec3 b, glm::vec3 c) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), {a, b, c});
-    mesh.triangles.emplace_back(first, first + 1, first + 2);
-}
 
 std::unique_ptr<Method> method(const Given& given) {
     for (const MethodRow& row : registry())

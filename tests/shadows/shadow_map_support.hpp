@@ -73,11 +73,6 @@ inline PointArrays random_points(const TriangleMesh& mesh, std::uint32_t seed) {
     return points;
 }
 
-inline void add_quad(TriangleMesh& mesh, glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d) {
-    tests::add_triangle(mesh, a, b, c);
-    tests::add_triangle(mesh, a, c, d);
-}
-
 /// A square floor of half width `half` at height `y`, in 2 * n * n triangles.
 inline void add_floor(TriangleMesh& mesh, float half, float y, int n = 1) {
     for (int i = 0; i < n; ++i)
@@ -87,19 +82,6 @@ inline void add_floor(TriangleMesh& mesh, float half, float y, int n = 1) {
             };
             add_quad(mesh, at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1));
         }
-}
-
-inline void add_box(TriangleMesh& mesh, glm::vec3 lower, glm::vec3 upper) {
-    const auto at = [&](int corner) {
-        return glm::vec3(corner & 1 ? upper.x : lower.x, corner & 2 ? upper.y : lower.y,
-                         corner & 4 ? upper.z : lower.z);
-    };
-    add_quad(mesh, at(0), at(1), at(3), at(2));
-    add_quad(mesh, at(4), at(5), at(7), at(6));
-    add_quad(mesh, at(0), at(1), at(5), at(4));
-    add_quad(mesh, at(2), at(3), at(7), at(6));
-    add_quad(mesh, at(0), at(2), at(6), at(4));
-    add_quad(mesh, at(1), at(3), at(7), at(5));
 }
 
 inline Scene box_over_floor(std::uint32_t seed = 1) {

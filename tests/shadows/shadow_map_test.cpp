@@ -15,6 +15,7 @@ namespace {
 
 using namespace shadows;
 using namespace tests::shadow_map;
+using tests::add_box;
 using shadows::shadow_map::BiasMode;
 using shadows::shadow_map::MapConfig;
 using shadows::shadow_map::ShadowMap;

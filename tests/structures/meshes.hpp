@@ -1,4 +1,4 @@
-// Seeded meshes that tests of structures and shadow methods share.
+// Meshes, most of them seeded, that tests of structures and shadow methods share.
 #pragma once
 
 #include <cmath>
@@ -15,6 +15,24 @@ inline void add_triangle(TriangleMesh& mesh, glm::vec3 a, glm::vec3 b, glm::vec3
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     mesh.positions.insert(mesh.positions.end(), {a, b, c});
     mesh.triangles.push_back({first, first + 1, first + 2});
+}
+
+/// Two triangles, a, b, c and a, c, d.
+inline void add_quad(TriangleMesh& mesh, glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d) {
+    add_triangle(mesh, a, b, c);
+    add_triangle(mesh, a, c, d);
+}
+
+/// Twelve triangles.
+inline void add_box(TriangleMesh& mesh, glm::vec3 lower, glm::vec3 upper) {
+    const auto corner = [&](int i) {
+        return glm::vec3(i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y,
+                         i & 4 ? upper.z : lower.z);
+    };
+    const int quads[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
+                             {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+    for (const auto& q : quads)
+        add_quad(mesh, corner(q[0]), corner(q[1]), corner(q[2]), corner(q[3]));
 }
 
 /// `count` separate triangles with edges of about `size` in the unit cube.
