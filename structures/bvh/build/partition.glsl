@@ -106,6 +106,7 @@ void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
     uint waiting_count = 0;
     bool more = true;
     while (more) {
+        pool_spend(kTurnIterations);  // as the loops that this turn passes over count, too
         Range next;
         if (subtree && task.count <= kLeafRange) {
             build_leaves(task);
@@ -159,6 +160,5 @@ void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
             begin = task.first;
             end = task.first + task.count;
         }
-        pool_spend(kTurnIterations);  // as the loops that this turn passes over count, too
     }
 }
