@@ -138,22 +138,13 @@ Answer run(const Scene& scene, const QueryConfig& config = {}) {
     return answer;
 }
 
-/// Every triangle tried in turn; those without an area or with a corner that is not finite left
-/// out.
+/// Every triangle tried in turn.
 std::vector<bool> brute_force(const Scene& scene) {
-    TriangleMesh finite = scene.mesh;
-    for (glm::uvec3& t : finite.triangles)
-        for (int k = 0; k < 3; ++k) {
-            const glm::vec3 corner = finite.positions[t[k]];
-            if (!std::isfinite(corner.x + corner.y + corner.z)) t = glm::uvec3(t[0]);
-        }
-    for (glm::vec3& p : finite.positions)
-        if (!std::isfinite(p.x + p.y + p.z)) p = {};
     std::vector<bool> lit(scene.points.x.size(), true);
     for (std::size_t i = 0; i < lit.size(); ++i)
         if (scene.points.primitive[i] != kNoPrimitive)
             lit[i] = !tests::occluded({scene.points.x[i], scene.points.y[i], scene.points.z[i]},
-                                      scene.points.primitive[i], scene.light, finite);
+                                      scene.points.primitive[i], scene.light, scene.mesh);
     return lit;
 }
 

@@ -217,7 +217,7 @@ TEST(OcclusionFilter, WhatIsNotFiniteIsNotDecidedWrongly) {
     EXPECT_NE(tests::occludes_filtered({0, 0, nan}, {Light::Type::point, {0, 0, 1}}, a, b, c),
               Decision::yes);
     // No way to the light, no occluder.
-    EXPECT_FALSE(tests::occludes({0, 0, 0}, {Light::Type::point, {0, 0, 0}}, a, b, c));
+    EXPECT_FALSE(tests::occludes_exactly({0, 0, 0}, {Light::Type::point, {0, 0, 0}}, a, b, c));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "shadows/method.hpp"
 #include "shadows/shadow_map/map.hpp"
+#include "shadows/truth/truth.hpp"
 #include "tests/shadows/shadow_map_support.hpp"
 #include "tests/support/gpu_fixture.hpp"
 
@@ -15,7 +16,6 @@ namespace {
 
 using namespace shadows;
 using namespace tests::shadow_map;
-using tests::add_box;
 using shadows::shadow_map::BiasMode;
 using shadows::shadow_map::MapConfig;
 using shadows::shadow_map::ShadowMap;
@@ -23,6 +23,7 @@ using shadows::shadow_map::usual_bias;
 using structures::Settings;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
+using tests::add_box;
 using ShadowMapTest = tests::GpuTest;
 
 struct Answer {
@@ -49,14 +50,13 @@ std::size_t shadowed(const Scene& scene, const Answer& answer) {
     return count;
 }
 
+/// Certain points answered wrongly.
 std::size_t wrong(const Scene& scene, const Answer& answer) {
+    const truth::Verdicts verdicts = truth::Truth(scene.mesh, scene.light).judge(scene.points, {});
     std::size_t count = 0;
     for (std::uint32_t i = 0; i < scene.points.x.size(); ++i) {
-        if (scene.points.primitive[i] == kNoPrimitive) continue;
-        const tests::Answer truth = tests::occluded_double(
-            position(scene.points, i), scene.points.primitive[i], scene.light, scene.mesh);
-        if (truth != tests::Answer::unsure)
-            count += answer.visible.lit(i) != (truth == tests::Answer::no);
+        const truth::Verdict verdict = verdicts.points[i];
+        count += verdict.certain() && answer.visible.lit(i) == verdict.shadowed();
     }
     return count;
 }
