@@ -16,7 +16,7 @@ const uint kEndFinished = 0u, kEndStackFull = 1u, kEndStepLimit = 2u, kEndUnsure
 struct BvhView {
     WideHeaderRef header;
     WideChildren nodes;
-    WideTriangles triangles;
+    CornerTriangles triangles;
 };
 
 struct BvhWalk {
@@ -114,7 +114,7 @@ bool bvh_occluded(BvhView view, Segment segment, uint own_primitive, bool last_r
                 const uint loops = kLoopsAreCut ? kLanes * take_exact_loops() : 0u;
                 walk.steps -= min(walk.steps, 1u + loops);
                 ++walk.triangles;
-                const WideTriangle t = view.triangles.at[triangle++];
+                const CornerTriangle t = view.triangles.at[triangle++];
                 if (t.primitive != own_primitive) {
                     const int answer = leaf_occludes(segment, t.a, t.b, t.c);
                     hit = answer == 1;

@@ -52,7 +52,7 @@ bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout BvhW
                 }
                 walk.steps -= min(walk.steps, 1u);
                 ++walk.triangles;
-                const WideTriangle t = push.triangles.at[triangle++];
+                const CornerTriangle t = push.triangles.at[triangle++];
                 if (has_bit(leaves, slot) && !hit && t.primitive != own_primitive) {
                     const int answer = leaf_occludes(segment, t.a, t.b, t.c);
                     hit = answer == 1;

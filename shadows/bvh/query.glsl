@@ -32,7 +32,7 @@ layout(push_constant, scalar) uniform Push {
     Status status;
     WideHeaderRef header;
     WideChildren nodes;
-    WideTriangles triangles;
+    CornerTriangles triangles;
     LaneWords scratch;      // of each workgroup
     vec3 light;             // position, or direction towards the light
     uint point_count;

@@ -60,21 +60,7 @@ ChildVote vote_children(bool inner, uint triangles) {
     return vote;
 }
 
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer TriangleWords {
-    uint64_t at[];
-};
-
-// A WideTriangle, read by words of 64 bits: gathers go word by word on a CPU device.
-void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint primitive) {
-    TriangleWords words = TriangleWords(uint64_t(push.triangles));
-    vec2 pair[5];
-    [[unroll]] for (uint i = 0; i < 5; ++i)
-        pair[i] = uintBitsToFloat(unpackUint2x32(words.at[5 * index + i]));
-    a = vec3(pair[0], pair[1].x);
-    b = vec3(pair[1].y, pair[2]);
-    c = vec3(pair[3], pair[4].x);
-    primitive = floatBitsToUint(pair[4].y);
-}
+CornerTriangle beam_triangle(uint index) { return corner_triangle(push.triangles, index); }
 
 void process_list(uint list, uint count) {
     subgroup_sync();
