@@ -61,6 +61,7 @@ structures::Samples Judgement::effort() const {
     return {{"truth_ms", verdicts_.effort.milliseconds, "ms"},
             {"truth_filtered", double(verdicts_.effort.filtered)},
             {"truth_exact", double(verdicts_.effort.exact)},
+            {"truth_candidates", double(verdicts_.effort.candidates)},
             {"truth_cached", double(cached_)}};
 }
 

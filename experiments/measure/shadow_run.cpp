@@ -38,12 +38,6 @@ const shadows::MethodRow& find_row(const Registries& registries, const std::stri
     throw std::logic_error("method '" + name + "' has left the registry");
 }
 
-double value_of(const structures::Samples& samples, std::string_view metric) {
-    for (const structures::Sample& sample : samples)
-        if (sample.metric == metric) return sample.value;
-    return 0;
-}
-
 void add(structures::Samples& samples, const structures::Samples& more) {
     samples.insert(samples.end(), more.begin(), more.end());
 }
