@@ -58,12 +58,6 @@ struct Contestant {
     std::string label() const { return config->name + " " + config->variant; }
 };
 
-double value_of(const structures::Samples& samples, std::string_view metric) {
-    for (const structures::Sample& sample : samples)
-        if (sample.metric == metric) return sample.value;
-    return 0;
-}
-
 class StabilityRun {
   public:
     explicit StabilityRun(Session& session) : session_(session) {
@@ -149,7 +143,7 @@ class StabilityRun {
                       const std::vector<Contestant*>& players) {
         std::optional<JudgedScene> judged;
         try {
-            judged = judge(scene, variation.keeps_coordinates());
+            judged = judge(scene);
         } catch (const std::exception& error) {
             throw std::runtime_error(fmt::format("{}: {}", place, error.what()));
         }

@@ -101,7 +101,7 @@ Scene vary(const Scene& scene, const Variation& variation) {
         case Variation::Kind::none:
             break;
     }
-    varied.exact = scene.exact && variation.keeps_coordinates();
+    varied.as_built = scene.as_built && variation.keeps_coordinates();
     return varied;
 }
 

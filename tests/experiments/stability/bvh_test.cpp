@@ -21,8 +21,7 @@ TEST_P(BvhStability, PassesTheSuite) {
             for (const Scene& scene : test.build(type))
                 for (const Variation& variation :
                      variations(few, 1, test.most < 1000 ? 0 : test.most)) {
-                    const JudgedScene judged =
-                        judge(vary(scene, variation), variation.keeps_coordinates());
+                    const JudgedScene judged = judge(vary(scene, variation));
                     const Marks marks = tests::answer(*method, judged);
                     EXPECT_TRUE(marks.passed())
                         << test.label() << ' '
