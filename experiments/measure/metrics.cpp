@@ -52,9 +52,6 @@ constexpr Metric kMetrics[] = {
     {"worst_x", "1", neither, "where the worst of a stress test's wrong answers was given"},
     {"worst_y", "1", neither, "the same, y"},
     {"worst_z", "1", neither, "the same, z"},
-    {"worst_severity", "1", neither,
-     "how far off any change of the answer that is: 3: over 16 epsilon, 2: 4, 1: 1, 0: in the "
-     "band"},
     {"incomplete", "1", lower, "points whose traversal did not end by itself"},
     {"triangles", "1", neither, "triangles of the scene"},
     {"truth_ms", "ms", lower, "time to judge the points exactly, when that was done"},

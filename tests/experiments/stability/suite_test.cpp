@@ -70,7 +70,7 @@ TEST_P(EveryTest, JudgeFindsWhatGeometryExpects) {
 }
 
 TEST_P(EveryTest, VariationsKeepTheAnswers) {
-    const experiments::config::Stability few{{}, 2, 1, {1e-4, 1e4}};
+    const Selection few{{}, 2, 1, {1e-4, 1e4}};
     for_each_scene([&](const Scene& scene) {
         for (const Variation& variation : variations(few, 1, GetParam().most)) {
             try {
@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(StressSuite, EveryTest, testing::ValuesIn(suite().begin
                          [](const auto& test) { return "T" + test.param.label(); });
 
 TEST(Variations, KindsAndLimits) {
-    const experiments::config::Stability config{{}, 3, 2, {0.5, 2, 4}};
+    const Selection config{{}, 3, 2, {0.5, 2, 4}};
     EXPECT_EQ(variations(config, 1, 1000).size(), 1u + 3 + 2 + 3);
     EXPECT_EQ(variations(config, 1, 1).size(), 4u);
     EXPECT_EQ(variations(config, 1, 0).size(), 1u);
