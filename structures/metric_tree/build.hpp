@@ -34,8 +34,7 @@ struct MetricTreeView {
     std::uint64_t header = 0;     ///< MetricHeader
     std::uint64_t nodes = 0;      ///< MetricNode[]
     std::uint64_t clusters = 0;   ///< Cluster[]
-    std::uint64_t triangles = 0;  ///< ClusterTriangle[]: three corners and the primitive, cluster after cluster
-    std::uint64_t special = 0;    ///< uint[]: indices of special clusters
+    std::uint64_t triangles = 0;  ///< CornerTriangle[], cluster after cluster
 };
 
 class MetricTreeBuild final : public taskpool::pool::Job {
