@@ -49,6 +49,7 @@ bool lane_occluded(Segment segment, uint own_primitive, bool last_resort, inout 
         if (link == 0) {
             link = rest;
             rest = 0;
+            returning = false;
             if (link == 0) break;
         }
         if (walk.steps == 0) {

@@ -42,6 +42,9 @@ GROVE_CONSTANT uint kLinkMask = 0x07ffffffu;
 GROVE_CONSTANT float kMetricError = 3.814697265625e-6f;
 /// Largest angular radius of an element, 60 degrees; clusters that look wider are special.
 GROVE_CONSTANT float kWidestElement = 1.0471975512f;
+/// Nodes on a path of a tree built by insertion, at most; elements that would come below are in a list
+/// along the last node's overlapping link, whose nodes' bounds hold everything.
+GROVE_CONSTANT uint kMaxDepth = 256;
 
 struct Cluster {
     vec3 a;             // world space
@@ -92,7 +95,7 @@ struct MetricHeader {
     uint inserted;       // elements in the tree
     uint culled_facing;  // clusters left out
     uint bucketed;       // elements in lists at the end of chains
-    uint depth_max;      // nodes on the longest path
+    uint depth_max;      // nodes on the longest path, those lists not counted
     uint special;        // link to the first special cluster's node
 };
 

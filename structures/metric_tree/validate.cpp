@@ -188,9 +188,11 @@ class Validator {
         equal("culled_facing", header.culled_facing, left_out_);
         std::uint32_t depth = 0;
         for (const std::uint32_t d : shape_.depth) depth = std::max(depth, d);
-        equal("depth_max", header.depth_max, depth);
+        if (header.depth_max > depth || depth > header.depth_max + header.bucketed)
+            fail("header: the longest path has {} nodes, not {} and up to {} in a list", depth,
+                 header.depth_max, header.bucketed);
         if (header.bucketed > header.inserted)
-            fail("header: {} elements in buckets of {} inserted", header.bucketed, header.inserted);
+            fail("header: {} elements in lists of {} inserted", header.bucketed, header.inserted);
     }
 
     void check_ancestors() {
