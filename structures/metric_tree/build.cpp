@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "structures/geometry/corner_triangle.h"
@@ -15,6 +16,21 @@ std::span<const taskpool::gpu::Shader> structures_metric_tree_shaders();
 namespace structures::metric_tree {
 
 using namespace taskpool;
+
+namespace {
+
+/// In the list of special clusters, before the one that `next` links to: as in elements.comp.
+MetricNode special_node(std::uint32_t next) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    MetricNode node{};
+    node.a = node.b = {1, 0, 0};
+    node.radius = node.over_max = node.far_min = kInfinity;
+    node.near_max = -1;
+    node.over = next;
+    return node;
+}
+
+}  // namespace
 
 /// Kernels of one variant.
 struct MetricTreeBuild::Kernels {
@@ -30,9 +46,9 @@ MetricTreeBuild::MetricTreeBuild(gpu::Device& device, const BuildConfig& config)
 MetricTreeBuild::~MetricTreeBuild() = default;
 
 std::size_t MetricTreeBuild::required_bytes(std::size_t clusters, std::size_t triangles) const {
-    const std::size_t per_cluster = sizeof(Cluster) + sizeof(MetricNode) + sizeof(std::uint32_t);
-    return clusters * per_cluster + triangles * sizeof(geometry::CornerTriangle) +
-           sizeof(MetricHeader) + linker_bytes(*device_, config_);
+    return clusters * (sizeof(Cluster) + sizeof(MetricNode)) +
+           triangles * sizeof(geometry::CornerTriangle) + sizeof(MetricHeader) +
+           linker_bytes(*device_, config_);
 }
 
 void MetricTreeBuild::prepare(const Clustering& clustering, const geometry::TriangleMesh& mesh) {
@@ -47,7 +63,6 @@ void MetricTreeBuild::prepare(const Clustering& clustering, const geometry::Tria
     active_ = nullptr;
     clusters_ = gpu::make_buffer<Cluster>(*device_, clustering.clusters, "clusters");
     nodes_ = gpu::Buffer(*device_, count * sizeof(MetricNode), "metric nodes");
-    special_ = gpu::Buffer(*device_, count * sizeof(std::uint32_t), "special clusters");
 
     const auto order = gpu::make_buffer<std::uint32_t>(*device_, clustering.order, "order");
     const auto positions = gpu::make_buffer<glm::vec3>(*device_, mesh.positions, "mesh positions");
@@ -67,9 +82,15 @@ void MetricTreeBuild::load(const Tree& tree) {
     if (tree.nodes.size() != cluster_count_)
         throw std::invalid_argument(fmt::format("metric tree: {} nodes for {} prepared clusters",
                                                 tree.nodes.size(), cluster_count_));
-    header_.write(&tree.header, sizeof(MetricHeader));
-    nodes_.write(tree.nodes.data(), tree.nodes.size() * sizeof(MetricNode));
-    special_.write(tree.special.data(), tree.special.size() * sizeof(std::uint32_t));
+    MetricHeader header = tree.header;
+    std::vector<MetricNode> nodes = tree.nodes;
+    header.special = 0;
+    for (const std::uint32_t id : tree.special) {
+        nodes[id] = special_node(header.special);
+        header.special = id + 1;
+    }
+    header_.write(&header, sizeof(header));
+    nodes_.write(nodes.data(), nodes.size() * sizeof(MetricNode));
 }
 
 void MetricTreeBuild::restart() {
@@ -96,10 +117,10 @@ void MetricTreeBuild::restart() {
 void MetricTreeBuild::record(gpu::Recorder& recorder) {
     if (!begun_ && cluster_count_ > 0) {
         struct {
-            std::uint64_t clusters, nodes, special, header;
+            std::uint64_t clusters, nodes, header;
             std::uint32_t count, cull_facing;
-        } push{clusters_.address(), nodes_.address(), special_.address(),
-               header_.address(),   cluster_count_,   config_.cull_facing};
+        } push{clusters_.address(), nodes_.address(), header_.address(), cluster_count_,
+               config_.cull_facing};
         recorder.dispatch(active_->elements, push, std::min(cluster_count_ / 1024 + 1, 8192u));
         recorder.barrier();
     }
@@ -111,8 +132,7 @@ bool MetricTreeBuild::advance() { return active_->linker->advance(); }
 double MetricTreeBuild::progress() const { return active_ ? active_->linker->progress() : 0; }
 
 MetricTreeView MetricTreeBuild::view() const {
-    return {header_.address(), nodes_.address(), clusters_.address(), triangles_.address(),
-            special_.address()};
+    return {header_.address(), nodes_.address(), clusters_.address(), triangles_.address()};
 }
 
 const pool::PoolStatus& MetricTreeBuild::status() const {
@@ -125,9 +145,13 @@ MetricHeader MetricTreeBuild::header() const { return gpu::read<MetricHeader>(he
 Tree MetricTreeBuild::read_back() const {
     Tree tree{header(), gpu::read<MetricNode>(nodes_, cluster_count_), {}};
     tree.header.root &= kLinkMask;
-    tree.special = gpu::read<std::uint32_t>(special_, tree.header.special_count);
     for (MetricNode& node : tree.nodes)
         for (std::uint32_t* link : {&node.near, &node.far, &node.over}) *link &= kLinkMask;
+    for (std::uint32_t link = tree.header.special; link != 0; link = tree.nodes[link - 1].over) {
+        if (link > cluster_count_ || tree.special.size() == cluster_count_)
+            throw std::logic_error("metric tree: its list of special clusters is damaged");
+        tree.special.push_back(link - 1);
+    }
     return tree;
 }
 

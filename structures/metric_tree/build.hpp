@@ -39,7 +39,6 @@ struct MetricTreeView {
     std::uint64_t nodes = 0;      ///< MetricNode[]
     std::uint64_t clusters = 0;   ///< Cluster[]
     std::uint64_t triangles = 0;  ///< geometry::CornerTriangle[], cluster after cluster
-    std::uint64_t special = 0;    ///< uint[]: indices of special clusters
 };
 
 class MetricTreeBuild final : public taskpool::pool::Job {
@@ -81,7 +80,7 @@ class MetricTreeBuild final : public taskpool::pool::Job {
     geometry::Aabb bounds_;
     std::uint32_t cluster_count_ = 0;
     bool capsules_ = false;
-    taskpool::gpu::Buffer clusters_, nodes_, triangles_, special_, header_;
+    taskpool::gpu::Buffer clusters_, nodes_, triangles_, header_;
     std::unique_ptr<Kernels> kernels_[2][2];  ///< [directional][capsules], made when first needed
     Kernels* active_ = nullptr;
     bool begun_ = false;  ///< elements.comp has been recorded

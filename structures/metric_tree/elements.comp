@@ -1,5 +1,6 @@
-// Clusters to elements: a node without subtrees for each, and the list of special ones. Nodes of
-// clusters that are no elements have radius -1 and stay out of the tree.
+// Clusters to elements: a node without subtrees for each, but the special ones' are linked in a list.
+// Clusters that are no elements have
+// an infinite radius, by which the builders know them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "taskpool/gpu/device.glsl"
@@ -17,42 +18,40 @@ scalar_buffer(4) Header { MetricHeader header; };
 layout(push_constant, scalar) uniform Push {
     Clusters clusters;
     Nodes nodes;
-    UintArray special;
     Header header;
     uint count;
     uint cull_facing;
 } push;
 
-MetricNode make_node(Element element, float min_depth) {
-    const float infinity = uintBitsToFloat(0x7f800000u);
-    return MetricNode(element.a, element.radius, element.b, -1.0, 0, 0, 0, 0, min_depth, infinity,
-                      -1.0, infinity);
-}
+const float kInfinity = uintBitsToFloat(0x7f800000u);
 
 void main() {
     const LightFrame frame = push.header.header.frame;
-    uint culled = 0;
-    // Uniform, for the ballot.
-    for (uint first = gl_WorkGroupID.x * gl_SubgroupSize; first < push.count;
-         first += gl_NumWorkGroups.x * gl_SubgroupSize) {
-        const uint i = first + gl_SubgroupInvocationID;
-        uint role = kRoleElement;
-        if (i < push.count) {
-            Element element;
-            float min_depth;
-            role = make_element(frame, push.clusters.at[i], push.cull_facing != 0, element, min_depth);
-            if (role != kRoleElement) element.radius = -1;
-            push.nodes.at[i] = make_node(element, min_depth);
+    uint special_count = 0, culled_count = 0;
+    for (uint i = gl_WorkGroupID.x * gl_SubgroupSize + gl_SubgroupInvocationID; i < push.count;
+         i += gl_NumWorkGroups.x * gl_SubgroupSize) {
+        Element element;
+        float min_depth;
+        const uint role =
+            make_element(frame, push.clusters.at[i], push.cull_facing != 0, element, min_depth);
+        MetricNode node = MetricNode(element.a, element.radius, element.b, -1.0, 0, 0, 0, 0, min_depth,
+                                     kInfinity, -1.0, kInfinity);
+        if (role != kRoleElement) {
+            node.a = node.b = vec3(1, 0, 0);
+            node.radius = kInfinity;
         }
-        culled += role == kRoleFacesAway ? 1 : 0;
-        const uvec4 special = subgroupBallot(role == kRoleSpecial);
-        const uint special_count = subgroupBallotBitCount(special);
-        if (special_count == 0) continue;
-        uint place = 0;
-        if (subgroupElect()) place = atomicAdd(push.header.header.special_count, special_count);
-        place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(special);
-        if (role == kRoleSpecial) push.special.at[place] = i;
+        if (role == kRoleSpecial) {
+            node.over = atomicExchange(push.header.header.special, i + 1);
+            node.min_depth = node.over_min = 0;
+            node.over_max = kInfinity;
+            ++special_count;
+        }
+        if (role == kRoleFacesAway) ++culled_count;
+        push.nodes.at[i] = node;
     }
-    culled = subgroupAdd(culled);
-    if (culled > 0 && subgroupElect()) atomicAdd(push.header.header.culled_facing, culled);
+    special_count = subgroupAdd(special_count);
+    culled_count = subgroupAdd(culled_count);
+    if (!subgroupElect()) return;
+    if (special_count > 0) atomicAdd(push.header.header.special_count, special_count);
+    if (culled_count > 0) atomicAdd(push.header.header.culled_facing, culled_count);
 }

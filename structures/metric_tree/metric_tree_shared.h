@@ -16,6 +16,9 @@
 //   into the near subtree         if D <= near_max,
 //   into the far subtree          if D >= far_min,
 //   into the overlapping subtree  if over_min <= D <= over_max.
+// Special clusters concern every query. Their nodes are not in the tree but in a list, which begins at
+// header.special and goes on along `over`; they have an infinite radius, bounds that hold always, and no ancestor.
+//
 // Every bound includes the radii of its elements and the errors of all distances, the query's own among
 // them.
 #ifndef STRUCTURES_METRIC_TREE_METRIC_TREE_SHARED_H
@@ -88,12 +91,12 @@ struct MetricHeader {
     LightFrame frame;
     uint root;           // link; 0: no tree
     uint cluster_count;
-    uint special_count;  // clusters that are no elements: around the light or too wide, see `special`
+    uint special_count;  // clusters that are no elements: around the light or too wide
     uint inserted;       // elements in the tree
     uint culled_facing;  // clusters left out
     uint bucketed;       // elements in lists at the end of chains
     uint depth_max;      // nodes on the longest path, those lists not counted
-    uint reserved;
+    uint special;        // link to the first special cluster's node
 };
 
 #ifdef __cplusplus
