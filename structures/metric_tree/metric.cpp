@@ -7,22 +7,14 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "structures/metric_tree/rounding.hpp"
+
 namespace structures::metric_tree {
 namespace {
 
 using glm::dvec3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
-
-float rounded_up(double x) {
-    const auto f = static_cast<float>(x);
-    return f < x ? std::nextafter(f, kFloatInfinity) : f;
-}
-
-float rounded_down(double x) {
-    const auto f = static_cast<float>(x);
-    return f > x ? std::nextafter(f, -kFloatInfinity) : f;
-}
 
 /// Power of two that takes `size` to between 1 and 2, within what single precision can multiply by.
 float scale_of(double size) {
