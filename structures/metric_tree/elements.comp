@@ -23,9 +23,9 @@ layout(push_constant, scalar) uniform Push {
     uint cull_facing;
 } push;
 
-const float kInfinity = uintBitsToFloat(0x7f800000u);
 
 void main() {
+    const float infinity = uintBitsToFloat(0x7f800000u);
     const LightFrame frame = push.header.header.frame;
     uint special_count = 0, culled_count = 0;
     for (uint i = gl_WorkGroupID.x * gl_SubgroupSize + gl_SubgroupInvocationID; i < push.count;
@@ -35,15 +35,15 @@ void main() {
         const uint role =
             make_element(frame, push.clusters.at[i], push.cull_facing != 0, element, min_depth);
         MetricNode node = MetricNode(element.a, element.radius, element.b, -1.0, 0, 0, 0, 0, min_depth,
-                                     kInfinity, -1.0, kInfinity);
+                                     infinity, -1.0, infinity);
         if (role != kRoleElement) {
             node.a = node.b = vec3(1, 0, 0);
-            node.radius = kInfinity;
+            node.radius = infinity;
         }
         if (role == kRoleSpecial) {
             node.over = atomicExchange(push.header.header.special, i + 1);
             node.min_depth = node.over_min = 0;
-            node.over_max = kInfinity;
+            node.over_max = infinity;
             ++special_count;
         }
         if (role == kRoleFacesAway) ++culled_count;
