@@ -82,7 +82,8 @@ MetricTreeMethod::MetricTreeMethod(taskpool::gpu::Device& device, const Settings
       cluster_config_(cluster_config(settings)),
       reference_(reference_config(settings)),
       build_(device, build_config(settings)),
-      query_(device, limits(settings), shaders(settings)),
+      limits_(limits(settings)),
+      shaders_(shaders(settings)),
       times_(device, 2) {}
 
 void MetricTreeMethod::prepare(const TriangleMesh& mesh) {
@@ -92,6 +93,10 @@ void MetricTreeMethod::prepare(const TriangleMesh& mesh) {
     bounds_ = mesh.bounds();
     triangle_count_ = clustering_.order.size();
     build_.prepare(clustering_, mesh);
+    // No code for capsules where there are none.
+    tiles::Shaders specialised = shaders_;
+    specialised.constants.emplace_back(24, build_.has_capsules());
+    query_.emplace(device_, limits_, std::move(specialised));
 }
 
 double MetricTreeMethod::build_on_host(const Light& light) {
@@ -128,15 +133,15 @@ Samples MetricTreeMethod::build(const Light& light) {
 }
 
 Samples MetricTreeMethod::query(const Points& points, Visibility& visible) {
-    query_.prepare(points.count());
+    query_->prepare(points.count());
     times_.clear();
     Recorder recorder(device_);
     recorder.timestamp(times_, "begin");
-    query_.record(recorder, build_.view(), points.address(), points.count(), light_);
+    query_->record(recorder, build_.view(), points.address(), points.count(), light_);
     recorder.timestamp(times_, "end");
     device_.run(recorder);
-    visible = query_.visibility();
-    Samples samples = query_.counters(points.valid_count());
+    visible = query_->visibility();
+    Samples samples = query_->counters(points.valid_count());
     samples.push_back({"query_ms", times_.milliseconds("begin", "end"), "ms"});
     return samples;
 }

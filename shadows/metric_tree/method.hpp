@@ -20,7 +20,7 @@ class MetricTreeMethod final : public Method {
     structures::Samples build(const structures::geometry::Light& light) override;
     /// query_ms, incomplete, deferred and, with statistics, visited nodes and tested triangles.
     structures::Samples query(const Points& points, Visibility& visible) override;
-    std::vector<float> heat() override { return query_.heat(); }
+    std::vector<float> heat() override { return query_->heat(); }
     bool claims_exact() const override { return !build_.config().cull_facing; }
 
   private:
@@ -31,7 +31,9 @@ class MetricTreeMethod final : public Method {
     /// Absent: built on the device.
     std::optional<structures::metric_tree::ReferenceConfig> reference_;
     structures::metric_tree::MetricTreeBuild build_;
-    tiles::TileQuery query_;
+    tiles::Limits limits_;
+    tiles::Shaders shaders_;
+    std::optional<tiles::TileQuery> query_;  ///< from prepare() on
     taskpool::gpu::Timestamps times_;
     structures::metric_tree::Clustering clustering_;
     structures::geometry::Aabb bounds_;

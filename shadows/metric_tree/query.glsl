@@ -2,7 +2,7 @@
 // which clusters a segment meets.
 #include "taskpool/gpu/device.glsl"
 layout(constant_id = 1) const bool kDirectional = false;
-layout(constant_id = 24) const bool kCapsules = true;
+layout(constant_id = 24) const bool kCapsules = true;  // false: all clusters are balls
 #include "structures/metric_tree/tree.glsl"
 
 struct Structure {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "structures/geometry/corner_triangle.h"
@@ -16,21 +15,6 @@ std::span<const taskpool::gpu::Shader> structures_metric_tree_shaders();
 namespace structures::metric_tree {
 
 using namespace taskpool;
-
-namespace {
-
-/// In the list of special clusters, before the one that `next` links to: as in elements.comp.
-MetricNode special_node(std::uint32_t next) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    MetricNode node{};
-    node.a = node.b = {1, 0, 0};
-    node.radius = node.over_max = node.far_min = kInfinity;
-    node.near_max = -1;
-    node.over = next;
-    return node;
-}
-
-}  // namespace
 
 /// Kernels of one variant.
 struct MetricTreeBuild::Kernels {
@@ -46,9 +30,9 @@ MetricTreeBuild::MetricTreeBuild(gpu::Device& device, const BuildConfig& config)
 MetricTreeBuild::~MetricTreeBuild() = default;
 
 std::size_t MetricTreeBuild::required_bytes(std::size_t clusters, std::size_t triangles) const {
-    return clusters * (sizeof(Cluster) + sizeof(MetricNode)) +
-           triangles * sizeof(geometry::CornerTriangle) + sizeof(MetricHeader) +
-           linker_bytes(*device_, config_);
+    const std::size_t per_cluster = sizeof(Cluster) + sizeof(MetricNode);
+    return clusters * per_cluster + triangles * sizeof(geometry::CornerTriangle) +
+           sizeof(MetricHeader) + linker_bytes(*device_, config_);
 }
 
 void MetricTreeBuild::prepare(const Clustering& clustering, const geometry::TriangleMesh& mesh) {
@@ -145,13 +129,12 @@ MetricHeader MetricTreeBuild::header() const { return gpu::read<MetricHeader>(he
 Tree MetricTreeBuild::read_back() const {
     Tree tree{header(), gpu::read<MetricNode>(nodes_, cluster_count_), {}};
     tree.header.root &= kLinkMask;
+    for (std::uint32_t link = tree.header.special;
+         link != 0 && tree.special.size() < tree.header.special_count;
+         link = tree.nodes[link - 1].over)
+        tree.special.push_back(link - 1);
     for (MetricNode& node : tree.nodes)
         for (std::uint32_t* link : {&node.near, &node.far, &node.over}) *link &= kLinkMask;
-    for (std::uint32_t link = tree.header.special; link != 0; link = tree.nodes[link - 1].over) {
-        if (link > cluster_count_ || tree.special.size() == cluster_count_)
-            throw std::logic_error("metric tree: its list of special clusters is damaged");
-        tree.special.push_back(link - 1);
-    }
     return tree;
 }
 

@@ -46,7 +46,7 @@ class MetricTreeBuild final : public taskpool::pool::Job {
     MetricTreeBuild(taskpool::gpu::Device& device, const BuildConfig& config);
     ~MetricTreeBuild() override;
 
-    /// Device memory of a build, pool (before any growth) and output: 132 bytes per cluster and 40
+    /// Device memory of a build, pool (before any growth) and output: 128 bytes per cluster and 40
     /// per triangle beside a constant.
     std::size_t required_bytes(std::size_t clusters, std::size_t triangles) const;
     /// Throws std::invalid_argument for kLinkMask or more clusters.
@@ -64,6 +64,8 @@ class MetricTreeBuild final : public taskpool::pool::Job {
     double progress() const override;
 
     MetricTreeView view() const;
+    /// Whether some of the clusters prepared are no balls.
+    bool has_capsules() const { return capsules_; }
     const BuildConfig& config() const { return config_; }
     const taskpool::pool::PoolStatus& status() const;
     MetricHeader header() const;

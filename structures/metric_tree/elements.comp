@@ -1,6 +1,5 @@
-// Clusters to elements: a node without subtrees for each, but the special ones' are linked in a list.
-// Clusters that are no elements have
-// an infinite radius, by which the builders know them.
+// Clusters to elements: a node without subtrees for each. The nodes of special clusters become a list,
+// those of clusters that are left out have radius -1.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "taskpool/gpu/device.glsl"
@@ -23,35 +22,38 @@ layout(push_constant, scalar) uniform Push {
     uint cull_facing;
 } push;
 
+MetricNode make_node(Element element, float min_depth) {
+    const float infinity = uintBitsToFloat(0x7f800000u);
+    return MetricNode(element.a, element.radius, element.b, -1.0, 0, 0, 0, 0, min_depth, infinity,
+                      -1.0, infinity);
+}
+
+/// In front of the list of special clusters; everything passes it by.
+MetricNode make_special(uint id) {
+    const uint next = atomicExchange(push.header.header.special, id + 1);
+    const float infinity = uintBitsToFloat(0x7f800000u);
+    return MetricNode(vec3(1, 0, 0), infinity, vec3(1, 0, 0), -1.0, 0, 0, next, 0, 0.0, 0.0, infinity,
+                      infinity);
+}
 
 void main() {
-    const float infinity = uintBitsToFloat(0x7f800000u);
     const LightFrame frame = push.header.header.frame;
-    uint special_count = 0, culled_count = 0;
+    uint culled = 0, special = 0;
     for (uint i = gl_WorkGroupID.x * gl_SubgroupSize + gl_SubgroupInvocationID; i < push.count;
          i += gl_NumWorkGroups.x * gl_SubgroupSize) {
         Element element;
         float min_depth;
         const uint role =
             make_element(frame, push.clusters.at[i], push.cull_facing != 0, element, min_depth);
-        MetricNode node = MetricNode(element.a, element.radius, element.b, -1.0, 0, 0, 0, 0, min_depth,
-                                     infinity, -1.0, infinity);
-        if (role != kRoleElement) {
-            node.a = node.b = vec3(1, 0, 0);
-            node.radius = infinity;
-        }
-        if (role == kRoleSpecial) {
-            node.over = atomicExchange(push.header.header.special, i + 1);
-            node.min_depth = node.over_min = 0;
-            node.over_max = infinity;
-            ++special_count;
-        }
-        if (role == kRoleFacesAway) ++culled_count;
+        if (role == kRoleFacesAway) element.radius = -1;
+        MetricNode node = make_node(element, min_depth);
+        if (role == kRoleSpecial) node = make_special(i);
         push.nodes.at[i] = node;
+        culled += role == kRoleFacesAway ? 1 : 0;
+        special += role == kRoleSpecial ? 1 : 0;
     }
-    special_count = subgroupAdd(special_count);
-    culled_count = subgroupAdd(culled_count);
-    if (!subgroupElect()) return;
-    if (special_count > 0) atomicAdd(push.header.header.special_count, special_count);
-    if (culled_count > 0) atomicAdd(push.header.header.culled_facing, culled_count);
+    culled = subgroupAdd(culled);
+    special = subgroupAdd(special);
+    if (culled > 0 && subgroupElect()) atomicAdd(push.header.header.culled_facing, culled);
+    if (special > 0 && subgroupElect()) atomicAdd(push.header.header.special_count, special);
 }

@@ -94,7 +94,7 @@ bool begin(uint place, uint places, out Insertion insertion) {
     }
     if (id >= pool.client.cluster_count) return false;
     const MetricNode node = pool.client.nodes.at[id];
-    if (isinf(node.radius)) return false;
+    if (node.radius < 0 || isinf(node.radius)) return false;
     insertion = Insertion(Element(node.a, node.b, node.radius), id, node.min_depth, 0, 0, 0);
     insertion.link = follow(uint64_t(pool.client.header) + kRootOffset, id + 1);
     return true;

@@ -198,6 +198,17 @@ MetricNode make_node(const Element& element, double min_depth) {
     return node;
 }
 
+MetricNode special_node(std::uint32_t next) {
+    MetricNode node{};
+    node.a = node.b = {1, 0, 0};
+    node.radius = kFloatInfinity;
+    node.near_max = -1;
+    node.over = next;
+    node.over_max = kFloatInfinity;
+    node.far_min = kFloatInfinity;
+    return node;
+}
+
 Element element_of(const MetricNode& node) { return {node.a, node.b, node.radius}; }
 
 }  // namespace structures::metric_tree

@@ -1,4 +1,4 @@
-// Reading a metric tree in a shader; see metric_tree_shared.h. The includer defines kDirectional.
+// Reading a metric tree in a shader; see metric_tree_shared.h. The includer defines kDirectional and kCapsules.
 #ifndef STRUCTURES_METRIC_TREE_TREE_GLSL
 #define STRUCTURES_METRIC_TREE_TREE_GLSL
 #include "taskpool/gpu/shared_types.h"
