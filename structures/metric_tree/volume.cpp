@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "structures/metric_tree/rounding.hpp"
+
 namespace structures::metric_tree {
 namespace {
 
@@ -18,13 +20,6 @@ using glm::dvec3;
 constexpr double kSpare = 4 * 0x1p-24;
 /// A capsule where the corners reach this much farther along their first axis than their second.
 constexpr double kLongish = 2;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-float rounded_up(double value) {
-    const auto nearest = static_cast<float>(value);
-    return nearest < value ? std::nextafter(nearest, kInfinity) : nearest;
-}
-float rounded_down(double value) { return -rounded_up(-value); }
 
 /// A ball with all points of its support on its surface, and the directions they span.
 struct Ball {
