@@ -139,7 +139,6 @@ class Builder {
 
     template <typename Emit>
     void link(const Range& range, const Emit& emit) {
-        reach_depth(range.depth);
         std::uint32_t* const ids = ids_.data() + range.begin;
         const std::size_t others = range.end - range.begin - 1;
         Random random(config_.seed + (std::uint64_t{range.begin} << 32 | range.end));
@@ -171,6 +170,7 @@ class Builder {
     template <typename Emit>
     void divide(const Range& range, std::vector<Placed>& placed, double delta, const Emit& emit) {
         std::uint32_t* const ids = ids_.data() + range.begin;
+        reach_depth(range.depth);
         MetricNode& node = begin_node(range);
         Bounds bounds;
         for (const Placed& p : placed) bounds.take(p.reach, part_of(p.reach, delta));
@@ -223,7 +223,6 @@ class Builder {
             }
         }
         listed_ += range.end - range.begin;
-        reach_depth(range.depth + (range.end - range.begin) - 1);
     }
 
     void reach_depth(std::uint32_t depth) {
