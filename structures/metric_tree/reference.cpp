@@ -21,7 +21,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <random>
 
 #include "structures/metric_tree/metric.hpp"
@@ -87,8 +87,9 @@ double cost_of(const std::vector<Placed>& placed, double delta) {
 }
 
 double median_of(const std::vector<Placed>& placed) {
-    std::vector<double> middles;
-    for (const Placed& p : placed) middles.push_back(p.reach.middle);
+    std::vector<double> middles(placed.size());
+    std::transform(placed.begin(), placed.end(), middles.begin(),
+                   [](const Placed& p) { return p.reach.middle; });
     const auto half = middles.begin() + middles.size() / 2;
     std::nth_element(middles.begin(), half, middles.end());
     return *half;
