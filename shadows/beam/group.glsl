@@ -34,7 +34,8 @@ const uint kSectionSlots = kSlots / kSections;
 uint live_sections(uint slots) {
     uint first = 0;
     [[unroll]] for (uint s = 0; s < kSections; ++s) first |= 1u << (s * kSectionSlots);
-    [[unroll]] for (uint i = 1; i < kSectionSlots; i *= 2) slots |= slots >> i;
+    [[unroll]] for (uint k = 0; k < 5; ++k)
+        if (1u << k < kSectionSlots) slots |= slots >> (1u << k);
     return subgroupOr(slots & first);
 }
 vec2 section_lower[kSections], section_upper[kSections];

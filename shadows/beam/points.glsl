@@ -20,11 +20,25 @@ uint tile_point(uint tile, uint k) {
 }
 bool has_bit(uint bits, uint k) { return (bits >> k & 1u) != 0; }
 
+// Loops over hops of 1, 2, 4 ... run over the logarithm: Mesa before 23 unrolls no loop whose variable is
+// multiplied or divided, and nobody would count its iterations.
+
 // Reductions by exchange are cheaper than the driver's own on narrow subgroups.
 float reduce_min(float value) {
     if (kLanes > 16) return subgroupMin(value);
-    [[unroll]] for (uint step = 1; step < 16; step *= 2) {
-        if (step < kLanes) value = min(value, subgroupShuffleXor(value, step));
+    [[unroll]] for (uint k = 0; k < 4; ++k) {
+        if (1u << k < kLanes) value = min(value, subgroupShuffleXor(value, 1u << k));
+    }
+    return value;
+}
+// Sum of the values of this lane and of those below; by exchange as well.
+uint sum_to_here(uint value) {
+    [[unroll]] for (uint k = 0; k < 7; ++k) {
+        const uint apart = 1u << k;
+        if (apart < kLanes) {
+            const uint other = subgroupShuffle(value, lane() - apart);
+            value += lane() < apart ? 0 : other;
+        }
     }
     return value;
 }
