@@ -45,7 +45,8 @@ layout(push_constant, scalar) uniform Push {
     FloatArray points;   // planes x, y, z, primitive of point_count words each
     UintArray cells;     // points per cell; then the first of each cell, and the end of the last
     UintArray farthest;  // pyramid: smallest k of a node's points, as an ordered word
-    UintArray keys;      // cell of each point, or kNoCell
+    UintArray keys;      // cell of each point, or kNoCell; then pairs of an entry and a place of a
+                         // point that double precision cannot tell
     UintArray places;    // its rank within the cell; then its place in the order of cells
     UintArray order;     // the point at each place
     Binned binned;       // in the order of cells
@@ -119,6 +120,13 @@ vec3 position_of(uint point) {
 }
 uint primitive_of(uint point) {
     return floatBitsToUint(push.points.at[3 * push.point_count + point]);
+}
+
+// From the point at a place in the order of cells to the light.
+Segment segment_of(uint place) {
+    const vec3 p = position_of(push.order.at[place]);
+    if (kDirectional) return directional_segment(p, push.light);
+    return point_segment(p, push.light);
 }
 
 // Index of this workgroup in a dispatch of one or two dimensions; there may be surplus ones.

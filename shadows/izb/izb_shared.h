@@ -68,8 +68,9 @@ struct IzbRange {
 };
 
 struct IzbStatus {
-    uint entry_count;  // more than the capacity: some did not fit, and the pass must be repeated
-    uint range_count;  // likewise
+    uint entry_count;   // more than the capacity: some did not fit, and the pass must be repeated
+    uint range_count;   // likewise
+    uint unsure_count;  // likewise: pairs of an entry and a point left to occludes_exactly()
     uint next_entry;
     uint next_range;
     // With statistics, as 64-bit counts, low word first: points against the functions of a
@@ -83,7 +84,7 @@ static_assert(sizeof(IzbFace) == 108);
 static_assert(sizeof(IzbFrame) == 32 + 6 * sizeof(IzbFace));
 static_assert(sizeof(IzbExtent) == 24);
 static_assert(sizeof(IzbEntry) == 16 && sizeof(IzbRange) == 12);
-static_assert(sizeof(IzbStatus) == 32 && offsetof(IzbStatus, tests) == 16);
+static_assert(sizeof(IzbStatus) == 36 && offsetof(IzbStatus, tests) == 20);
 }  // namespace shadows::izb
 #endif
 #undef GROVE_CONSTANT

@@ -58,6 +58,7 @@ Samples IzbMethod::query(const Points& points, Visibility& visible) {
         const double count = std::max(points.valid_count(), 1u);
         samples.push_back({"tested_triangles_mean", double(result.tests) / count});
         samples.push_back({"exact_tests_mean", double(result.exact_tests) / count});
+        samples.push_back({"exact_decisions", double(result.unsure)});
     }
     return samples;
 }

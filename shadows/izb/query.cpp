@@ -126,7 +126,8 @@ const Query::Kernels& Query::kernels() {
     found = {kernel("shadows/izb/bounds.comp"),  kernel("shadows/izb/count.comp"),
              kernel("shadows/izb/scatter.comp"), kernel("shadows/izb/reduce.comp"),
              kernel("shadows/izb/cast.comp"),    kernel("shadows/izb/test.comp"),
-             kernel("shadows/izb/ranges.comp"),  kernel("shadows/izb/answer.comp")};
+             kernel("shadows/izb/ranges.comp"),  kernel("shadows/izb/unsure.comp"),
+             kernel("shadows/izb/answer.comp")};
     return found;
 }
 
@@ -160,8 +161,11 @@ void Query::submit(QueryResult& result, const std::function<void(Recorder&)>& re
 }
 
 void Query::allocate_points(std::uint32_t count) {
-    for (Buffer* buffer : {&keys_, &places_, &order_})
+    for (Buffer* buffer : {&places_, &order_})
         grow(device_, *buffer, std::size_t{count} * 4, "izb points");
+    // Becomes the list of unsure pairs. One triangle alone always finds room: its entries have no
+    // cell in common.
+    grow(device_, keys_, std::size_t{count} * 8, "izb keys");
     grow(device_, binned_, count * kBinnedBytes, "izb binned points");
     grow(device_, visible_, count / 8, "visibility");
 }
@@ -178,7 +182,7 @@ void Query::allocate_cells(const Grid& grid) {
     const std::size_t entries =
         config_.entries > 0 ? config_.entries : 4 * std::size_t{triangle_count_};
     grow(device_, entries_, std::max(entries, blocks) * sizeof(IzbEntry), "izb entries");
-    const std::size_t pieces = cells + keys_.size() / 4 / kRangePoints + 1;
+    const std::size_t pieces = cells + keys_.size() / 8 / kRangePoints + 1;
     grow(device_, ranges_, std::max<std::size_t>(config_.ranges, pieces) * sizeof(IzbRange),
          "izb ranges");
 }
@@ -228,6 +232,7 @@ bool Query::shadow_batch(const Push& push, std::uint32_t first, std::uint32_t co
     const std::uint32_t lanes = device_.subgroup_size();
     const std::uint32_t entry_capacity = std::uint32_t(entries_.size() / sizeof(IzbEntry));
     const std::uint32_t range_capacity = std::uint32_t(ranges_.size() / sizeof(IzbRange));
+    const std::uint32_t unsure_capacity = std::uint32_t(keys_.size() / 8);
     const Kernels& kernel = kernels();
     // Workgroups over `items`, one per lane: as many as run at once, or one for each chunk.
     const auto groups = [&](std::uint32_t items) {
@@ -247,15 +252,23 @@ bool Query::shadow_batch(const Push& push, std::uint32_t first, std::uint32_t co
     if (entries > entry_capacity) return false;
     if (entries == 0) return true;
     submit(result, [&](Recorder& recorder) {
-        dispatch(recorder, kernel.test, push.with(entries, 0, range_capacity), groups(entries));
+        dispatch(recorder, kernel.test, push.with(entries, unsure_capacity, range_capacity),
+                 groups(entries));
     });
     const std::uint32_t ranges = status().range_count;
     if (ranges > range_capacity) return false;
     if (ranges > 0)
         submit(result, [&](Recorder& recorder) {
-            dispatch(recorder, kernel.ranges, push.with(ranges), groups(ranges));
+            dispatch(recorder, kernel.ranges, push.with(ranges, unsure_capacity), groups(ranges));
         });
     const IzbStatus end = status();
+    if (end.unsure_count > unsure_capacity) return false;
+    if (end.unsure_count > 0)
+        submit(result, [&](Recorder& recorder) {
+            dispatch(recorder, kernel.unsure, push.with(end.unsure_count),
+                     divide_up(end.unsure_count, lanes));
+        });
+    result.unsure += end.unsure_count;
     result.entries += entries;
     result.ranges += ranges;
     result.tests += std::uint64_t{end.tests.y} << 32 | end.tests.x;

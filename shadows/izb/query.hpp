@@ -10,7 +10,7 @@
 // above the cells. Each triangle is rasterised conservatively: cells whose points it may shadow,
 // and which are not all in front of its plane or shadowed already, have their points tested, first
 // by linear functions with error bounds (caster.glsl), and where those cannot decide by the exact
-// test (shadows/occlusion.glsl). After G. Johnson, J. Lee, C. Burns and W. Mark, "The irregular
+// test (shadows/occlusion.glsl), whose last resort has a pass of its own. After G. Johnson, J. Lee, C. Burns and W. Mark, "The irregular
 // z-buffer: hardware acceleration for irregular data structures", 2005, and T. Aila and S. Laine,
 // "Alias-free shadow maps", 2004; the compute version after C. Wyman, R. Hoetzlein and A. Lefohn,
 // "Frustum-traced raster shadows", 2015. Deviations: points are compacted per cell instead of
@@ -47,6 +47,7 @@ struct QueryResult {
     std::uint32_t passes = 0;       ///< over the triangles: more than 1 where a list was too short
     std::uint64_t tests = 0;        ///< with statistics: point-triangle pairs tested
     std::uint64_t exact_tests = 0;  ///< with statistics: of these, by the exact test
+    std::uint64_t unsure = 0;       ///< pairs decided by its last resort, occludes_exactly
 };
 
 class Query {
@@ -65,7 +66,8 @@ class Query {
 
   private:
     struct Kernels {
-        taskpool::gpu::Kernel bounds, count, scatter, reduce, cast, test, ranges, answer;
+        taskpool::gpu::Kernel bounds, count, scatter, reduce, cast, test, ranges, unsure,
+            answer;
     };
     struct Push;
 
@@ -75,7 +77,7 @@ class Query {
     void allocate_cells(const Grid& grid);
     Grid bin(const Points& points, QueryResult& result);
     void shadow(const Points& points, QueryResult& result);
-    /// Whether both lists had room for the `count` triangles from `first` on.
+    /// Whether all lists had room for the `count` triangles from `first` on.
     bool shadow_batch(const Push& push, std::uint32_t first, std::uint32_t count,
                       QueryResult& result);
     void submit(QueryResult& result, const std::function<void(taskpool::gpu::Recorder&)>& record);

@@ -1,5 +1,6 @@
 // Testing the points of cells against a triangle: what the kernels over entries and over ranges of
-// points share. A lane holds an entry; the subgroup turns to them one after the other.
+// points share. A lane holds an entry; the subgroup turns to them one after the other. What double
+// precision cannot tell goes to a list with room for job.y pairs.
 #ifndef SHADOWS_IZB_TEST_GLSL
 #define SHADOWS_IZB_TEST_GLSL
 #include "shadows/izb/caster.glsl"
@@ -52,13 +53,14 @@ void turn_to(Held held, uint from) {
     entry_caster = broadcast(held.caster, from);
 }
 
-bool exactly_occluded(uint place) {
-    const vec3 p = position_of(push.order.at[place]);
-    if (kDirectional)
-        return occludes(directional_segment(p, push.light), entry_triangle.a, entry_triangle.b,
-                        entry_triangle.c);
-    return occludes(point_segment(p, push.light), entry_triangle.a, entry_triangle.b,
-                    entry_triangle.c);
+// Leaves a point to unsure.comp, against the entry at hand. A list that has overflowed is not counted
+// further, lest the count wraps.
+void leave_unsure(uint place) {
+    uint index = push.status.at.unsure_count;
+    if (index <= push.job.y) index = atomicAdd(push.status.at.unsure_count, 1u);
+    if (index >= push.job.y) return;
+    push.keys.at[2 * index] = entry_index;
+    push.keys.at[2 * index + 1] = place;
 }
 
 // Tests the points at places [begin, end), which is not empty. Returns the smallest k of those that
@@ -79,7 +81,12 @@ float test_points(uint begin, uint end) {
             test_count += alive ? 1 : 0;
             exact_count += verdict == kDoubt ? 1 : 0;
         }
-        if (verdict == kDoubt) verdict = exactly_occluded(place) ? kHit : kMiss;
+        if (verdict == kDoubt) {
+            const int answer = occludes_quickly(segment_of(place), entry_triangle.a,
+                                                entry_triangle.b, entry_triangle.c);
+            if (answer == kUnsure) leave_unsure(place);
+            verdict = answer == 1 ? kHit : kMiss;
+        }
         if (verdict == kHit) push.binned.at[place].primitive = kNoPrimitive;
         if (alive && verdict != kHit) farthest = min(farthest, p.k);
         first += gl_SubgroupSize;

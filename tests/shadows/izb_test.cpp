@@ -414,6 +414,32 @@ TEST_F(IzbShadow, FullListsLoseNothing) {
     EXPECT_EQ(differences(tight.visible, expected), 0u);
 }
 
+TEST_F(IzbShadow, WhatDoublePrecisionCannotTell) {
+    // The light and all points in the plane of all triangles, which is parallel to no axis.
+    Random random(new_seed());
+    const glm::vec3 right(1, 2, 4), down(3, -1, 5);
+    const auto in_plane = [&](float size) {
+        const auto whole = [&] { return std::round(size * (2 * random.unit() - 1)); };
+        const float u = whole(), v = whole();
+        return (u * right + v * down) / 3.0f;
+    };
+    Scene scene;
+    for (int i = 0; i < 300; ++i)
+        add_triangle(scene.mesh, in_plane(500), in_plane(500), in_plane(500));
+    no_points(scene, 2000);
+    for (std::uint32_t i = 0; i < 2000; ++i) set_point(scene, i, in_plane(500));
+    scene.light.vector = in_plane(500);
+    const std::vector<bool> expected = brute_force(scene);
+    // More pairs than points: more than their list has room for.
+    const Answer answer = run(scene);
+    EXPECT_EQ(differences(answer.visible, expected), 0u);
+    EXPECT_GT(answer.result.unsure, scene.points.x.size());
+    EXPECT_GT(answer.result.passes, 1u);
+    const Answer crowded = run(scene, {.resolution = 1});
+    EXPECT_EQ(differences(crowded.visible, expected), 0u);
+    EXPECT_GT(crowded.result.unsure, scene.points.x.size());
+}
+
 TEST_F(IzbShadow, StatisticsCountWork) {
     const Scene scene = soup(43, 500, 0.3f, 3000);
     const Answer plain = run(scene), counted = run(scene, {.statistics = true});
