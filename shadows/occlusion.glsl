@@ -75,14 +75,20 @@ Segment point_segment(vec3 p, vec3 light) {
 
 Segment directional_segment(vec3 p, vec3 towards) { return make_segment(p, towards, towards, true); }
 
+// A corner relative to the segment's origin, its dominant axis last; and sheared onto that axis.
+vec3 seen_from_origin(Segment s, vec3 corner) {
+    precise vec3 r = axis_last(corner - s.origin, s.axis);
+    return r;
+}
+vec2 sheared(Segment s, vec3 r) {
+    precise vec2 across = r.xy - s.shear.xy * r.z;
+    return across;
+}
+
 // 1, 0, or kUnsure: left to occludes_exactly().
 int occludes_quickly(Segment s, vec3 a, vec3 b, vec3 c) {
-    precise vec3 ra = axis_last(a - s.origin, s.axis);
-    precise vec3 rb = axis_last(b - s.origin, s.axis);
-    precise vec3 rc = axis_last(c - s.origin, s.axis);
-    precise vec2 sa = ra.xy - s.shear.xy * ra.z;
-    precise vec2 sb = rb.xy - s.shear.xy * rb.z;
-    precise vec2 sc = rc.xy - s.shear.xy * rc.z;
+    const vec3 ra = seen_from_origin(s, a), rb = seen_from_origin(s, b), rc = seen_from_origin(s, c);
+    const vec2 sa = sheared(s, ra), sb = sheared(s, rb), sc = sheared(s, rc);
     precise float u = sc.x * sb.y - sc.y * sb.x;
     precise float v = sa.x * sc.y - sa.y * sc.x;
     precise float w = sb.x * sa.y - sb.y * sa.x;

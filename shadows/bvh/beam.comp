@@ -18,7 +18,7 @@ void main() {
     const vec3 origin = kDirectional ? 0.5 * header.origin + 0.5 * header.upper : push.light;
     const vec3 farthest = max(abs(header.upper - origin), abs(header.origin - origin));
     const float size = max(max(farthest.x, farthest.y), farthest.z);
-    uint taken = 0, stack_full = 0, step_limit = 0, finished = 0, packet_tiles = 0;
+    uint taken = 0, stack_full = 0, step_limit = 0, packet_tiles = 0;
     uint exact_tests = 0, groups = 0;
     while (true) {
         const uint tile = next_tile(taken);
@@ -39,14 +39,12 @@ void main() {
         }
         store_tile(push.visible, tile, ~occluded);
         stack_full += beams.stack_full;
-        ++finished;
         exact_tests += beams.exact_tests;
         groups += beams.groups;
     }
     count_decisions();
     if (kStatistics) exact_tests = subgroupAdd(exact_tests);
     if (lane() == 0) {
-        atomicAdd(push.status.at.finished_tiles, finished);
         atomicAdd(push.status.at.stack_full, stack_full);
         atomicAdd(push.status.at.step_limit, step_limit);
         atomicAdd(push.status.at.packet_tiles, packet_tiles);

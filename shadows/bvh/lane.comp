@@ -6,7 +6,7 @@
 
 void main() {
     BvhView view = BvhView(push.header, push.nodes, push.triangles);
-    uint taken = 0, stack_full = 0, step_limit = 0, finished = 0, steps = kStepLimit;
+    uint taken = 0, stack_full = 0, step_limit = 0, steps = kStepLimit;
     while (true) {
         const uint tile = next_tile(taken);
         if (tile == kNoTile) break;
@@ -26,10 +26,8 @@ void main() {
         }
         store_tile(push.visible, tile, ~occluded);
         defer(tile, deferred);
-        ++finished;
     }
     count_decisions();
-    if (lane() == 0) atomicAdd(push.status.at.finished_tiles, finished);
     if (stack_full > 0) atomicAdd(push.status.at.stack_full, stack_full);
     if (step_limit > 0) atomicAdd(push.status.at.step_limit, step_limit);
 }

@@ -24,12 +24,8 @@ float difference_of_products(float x, float y, float z, float w) {
 // Woop, Benthin and Wald 2013, "Watertight ray/triangle intersection", without its second look in
 // double precision at edge functions that are 0.
 bool occludes_watertight(Segment s, vec3 a, vec3 b, vec3 c) {
-    precise vec3 ra = axis_last(a - s.origin, s.axis);
-    precise vec3 rb = axis_last(b - s.origin, s.axis);
-    precise vec3 rc = axis_last(c - s.origin, s.axis);
-    precise vec2 sa = ra.xy - s.shear.xy * ra.z;
-    precise vec2 sb = rb.xy - s.shear.xy * rb.z;
-    precise vec2 sc = rc.xy - s.shear.xy * rc.z;
+    const vec3 ra = seen_from_origin(s, a), rb = seen_from_origin(s, b), rc = seen_from_origin(s, c);
+    const vec2 sa = sheared(s, ra), sb = sheared(s, rb), sc = sheared(s, rc);
     const float u = difference_of_products(sc.x, sb.y, sc.y, sb.x);
     const float v = difference_of_products(sa.x, sc.y, sa.y, sc.x);
     const float w = difference_of_products(sb.x, sa.y, sb.y, sa.x);

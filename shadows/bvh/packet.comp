@@ -5,7 +5,7 @@
 #include "shadows/bvh/packet.glsl"
 
 void main() {
-    uint taken = 0, stack_full = 0, step_limit = 0, finished = 0, steps = kStepLimit;
+    uint taken = 0, stack_full = 0, step_limit = 0, steps = kStepLimit;
     while (true) {
         const uint tile = next_tile(taken);
         if (tile == kNoTile) break;
@@ -17,11 +17,9 @@ void main() {
         defer(tile, answer.deferred);
         stack_full += answer.stack_full;
         step_limit += answer.step_limit;
-        ++finished;
     }
     count_decisions();
     if (lane() == 0) {
-        atomicAdd(push.status.at.finished_tiles, finished);
         atomicAdd(push.status.at.stack_full, stack_full);
         atomicAdd(push.status.at.step_limit, step_limit);
     }

@@ -18,6 +18,11 @@ layout(constant_id = 22) const float kBias = 0.0;  // how far points move toward
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Status { QueryStatus at; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Costs { PointCost at[]; };
 
+/// Words that lanes exchange: only nonprivate accesses take part in the memory model's barriers.
+layout(buffer_reference, scalar, buffer_reference_align = 4) nonprivate buffer LaneWords {
+    uint at[];
+};
+
 layout(push_constant, scalar) uniform Push {
     FloatArray points;      // planes x, y, z, primitive of point_count words each
     UintArray visible;      // one bit per point
@@ -28,7 +33,7 @@ layout(push_constant, scalar) uniform Push {
     WideHeaderRef header;
     WideChildren nodes;
     WideTriangles triangles;
-    UintArray scratch;      // of each workgroup
+    LaneWords scratch;      // of each workgroup
     vec3 light;             // position, or direction towards the light
     uint point_count;
 } push;

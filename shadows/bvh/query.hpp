@@ -11,10 +11,10 @@
 //   lane    one segment per lane
 //   packet  a subgroup's segments share one stack
 //   beam    a subgroup owns a tile of 16 x 16 points and walks the tree with the tile's frustum
-// Points of beams that meet too many triangles go on in packets, in the same kernel. What packets
-// cannot finish within their limits, or without the last resort of the exact test
-// (occludes_exactly), is left to a per-point walk, recorded behind them as an
-// indirect dispatch; nothing is dropped, and the status counts what happened.
+// Points of beams that meet too many triangles, or fill their stack or take too long, go on in
+// packets, in the same kernel. What packets cannot finish within their limits, or without the last
+// resort of the exact test (occludes_exactly), is left to a per-point walk, recorded behind them as
+// an indirect dispatch; nothing is dropped, and the status counts what happened.
 #pragma once
 
 #include <array>
@@ -41,7 +41,8 @@ enum class Leaf : std::uint32_t {
 struct QueryConfig {
     QueryKind kind = QueryKind::beam;
     bool statistics = false;
-    // Limits of packet and beam; small ones force the per-point walk.
+    // Limits of packet and beam. Small ones leave points to the per-point walk; a small `density`
+    // leaves them to packets.
     std::uint32_t stack = 32;         ///< entries of the traversal stack
     std::uint32_t list = 1024;        ///< triangles collected before they are processed
     std::uint32_t steps = 1'000'000;  ///< loop iterations of one traversal

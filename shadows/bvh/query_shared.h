@@ -14,15 +14,14 @@ using namespace taskpool::gpu::shared_types;
 #define GROVE_CONSTANT const
 #endif
 
-// Counters of one query. Every tile, and every point that is left over, ends in one of these ways.
+// Counters of one query.
 struct QueryStatus {
-    uint finished_tiles;   // answered by the kernel of the query itself
     uint stack_full;       // traversals given up because their stack was full
-    uint step_limit;       // traversals given up because they took too many steps
+    uint step_limit;       // packets and single segments given up because of too many steps
     uint packet_tiles;     // tiles some of whose points went on in packets
-    uint deferred_points;  // points left to the per-point walk: see above, or exact_decisions
+    uint deferred_points;  // points left to the per-point walk: as above, or undecided in fp64
     uint incomplete;       // points that even the per-point walk did not finish: must be 0
-    uint exact_tests;      // with statistics: point-triangle pairs decided by the exact test
+    uint exact_tests;      // with statistics: point-triangle pairs that beams left to the exact test
     uint groups;           // with statistics: groups of points that walked the tree
     // Tiles with deferred points: a list, walked by an indirect dispatch.
     uint deferred_groups_x;
@@ -32,7 +31,7 @@ struct QueryStatus {
     uint fp64_decisions;   // with statistics: point-triangle pairs that went to double precision,
     uint exact_decisions;  // and of these, to error-free sums
 };
-GROVE_CONSTANT uint kDeferredOffset = 32u;
+GROVE_CONSTANT uint kDeferredOffset = 28u;
 
 // Leaf tests (leaf_variants.glsl).
 GROVE_CONSTANT uint kLeafExact = 0u;
@@ -47,7 +46,7 @@ struct PointCost {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(QueryStatus) == 56);
+static_assert(sizeof(QueryStatus) == 52);
 static_assert(offsetof(QueryStatus, deferred_groups_x) == kDeferredOffset);
 static_assert(sizeof(PointCost) == 8);
 }  // namespace shadows::bvh

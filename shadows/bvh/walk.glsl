@@ -77,7 +77,7 @@ void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint prim
 }
 
 void process_list(uint list, uint count) {
-    memoryBarrier(gl_ScopeSubgroup, gl_StorageSemanticsBuffer, gl_SemanticsAcquireRelease);
+    subgroup_sync();
     if (count == 0 || !beam_take_triangles(count)) return;
     uint i = 0;
     while (true) {
@@ -86,7 +86,7 @@ void process_list(uint list, uint count) {
         i += kLanes;
         if (i >= count || group_finished() || !beam_step(1)) break;
     }
-    memoryBarrier(gl_ScopeSubgroup, gl_StorageSemanticsBuffer, gl_SemanticsAcquireRelease);
+    subgroup_sync();
 }
 
 void beam_walk() {

@@ -36,7 +36,17 @@ Trace trace_of(std::uint32_t width) {
     }
 }
 
-float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
+/// Embree ends the program at rays that begin or end out of its range.
+void check_range(const structures::geometry::Aabb& box) {
+    const glm::vec3 limit(kLargestCoordinate);
+    if (glm::all(glm::greaterThanEqual(box.lower, -limit)) &&
+        glm::all(glm::lessThanEqual(box.upper, limit)))
+        return;
+    throw std::invalid_argument(fmt::format(
+        "embree: a coordinate of the light, the mesh or a point exceeds {:g}, beyond which Embree "
+        "traces no ray; move it nearer, or make the light directional",
+        kLargestCoordinate));
+}
 
 }  // namespace
 
@@ -52,23 +62,16 @@ EmbreeMethod::EmbreeMethod(const Config& config)
 
 void EmbreeMethod::prepare(const structures::geometry::TriangleMesh& mesh) {
     scene_.load(mesh);
-    const structures::geometry::Aabb box = mesh.bounds();
-    diagonal_ = glm::length(box.extent());
-    largest_ =
-        mesh.triangles.empty() ? 0 : largest(glm::max(glm::abs(box.lower), glm::abs(box.upper)));
+    bounds_ = mesh.bounds();
     rays_.reset();
     trace_ = trace_of(config_.width);  // width 0 decides anew for another scene
 }
 
 Samples EmbreeMethod::build(const Light& light) {
-    const bool is_point = light.type == Light::Type::point;
-    if (std::max(largest_, is_point ? largest(glm::abs(light.vector)) : 0) > kLargestCoordinate)
-        throw std::invalid_argument(
-            fmt::format("embree: a coordinate of the light or the mesh exceeds {:g}, beyond which "
-                        "Embree traces no ray; move the light nearer, or make it directional",
-                        kLargestCoordinate));
+    if (!bounds_.empty()) check_range(bounds_);
+    if (light.type == Light::Type::point) check_range({light.vector, light.vector});
     const double build_ms = scene_.build(config_.quality);
-    rays_ = std::make_unique<ShadowRays>(light, diagonal_, config_.bias);
+    rays_ = std::make_unique<ShadowRays>(light, glm::length(bounds_.extent()), config_.bias);
     return {{"build_ms", build_ms, "ms"},
             {"memory_bytes", static_cast<double>(scene_.memory_bytes()), "bytes"}};
 }
@@ -100,6 +103,11 @@ Trace EmbreeMethod::faster_packets(const PointArrays& points) {
 
 Samples EmbreeMethod::query(const Points& points, Visibility& visible) {
     if (!scene_.handle() || !rays_) throw std::logic_error("embree: query() before build()");
+    const PointArrays& host = points.host();
+    structures::geometry::Aabb reach;
+    for (std::uint32_t i = 0; i < points.count(); ++i)
+        reach.grow({host.x[i], host.y[i], host.z[i]});
+    if (points.count() > 0) check_range(reach);
     if (!trace_) trace_ = faster_packets(points.host());
     visible.words.resize(points.count() / 32);
     const double query_ms = trace_all(trace_, points.host(), 1, visible.words);

@@ -35,7 +35,8 @@ class EmbreeMethod final : public Method {
     /// build_ms and memory_bytes. The scene serves any light, but is built anew each time. Throws
     /// std::invalid_argument for coordinates that Embree takes no ray at (9e17).
     structures::Samples build(const structures::geometry::Light& light) override;
-    /// query_ms, rays, mrays_per_s. Throws std::logic_error before build().
+    /// query_ms, rays, mrays_per_s. Throws std::logic_error before build(), and as build() does for
+    /// points out of range.
     structures::Samples query(const Points& points, Visibility& visible) override;
 
   private:
@@ -47,9 +48,8 @@ class EmbreeMethod final : public Method {
     Config config_;
     structures::embree::Scene scene_;
     Workers workers_;
-    float diagonal_ = 0;     ///< of the scene's bounds
-    float largest_ = 0;      ///< of its coordinates
-    Trace trace_ = nullptr;  ///< null: width 0, not yet decided
+    structures::geometry::Aabb bounds_;  ///< of the scene
+    Trace trace_ = nullptr;              ///< null: width 0, not yet decided
     std::unique_ptr<ShadowRays> rays_;
 };
 

@@ -16,12 +16,10 @@ namespace {
 using namespace taskpool;
 
 constexpr std::uint32_t kLoops = 64;  // see ClientSpec::loops
-constexpr std::uint32_t kTurnLoops =
-    80;  // that one turn of the pool, or of a subtree, may pass over
 constexpr std::uint32_t kDeterministicLeafRange = 8;
 constexpr std::uint32_t kMaxLeafRange = 32;  // a set of lanes is one word there
 
-// The kernel's struct Task: 20 words of range and rule, 6 of bounds, and five boxes of keys.
+// The kernel's struct Task: 18 words of range and rule, 6 of bounds, and five boxes of keys.
 struct Task {
     uint first, count, node, depth, side;
     uint box[kKeys];
@@ -62,8 +60,7 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
     const std::uint32_t groups = kChunkPrimitives / lanes,
                         leaf_range = leaf_range_of(lanes, config);
     const std::uint32_t small = kChunkPrimitives / axis_lanes + 4 * groups,
-                        turns =
-                            2 * kSubtreePrimitives * (device.info().loop_limit ? kTurnLoops : 1),
+                        turns = 2 * kSubtreePrimitives * pool::turn_iterations(device, kLoops),
                         subtree = 40 * kSubtreePrimitives +
                                   2 * (leaf_range + 2) * (leaf_range + 2) + turns;
     spec.chunk_iterations = std::max(small, subtree) + 1024;
@@ -74,7 +71,7 @@ pool::ClientSpec client_spec(const gpu::Device& device, const Config& config) {
         {19, config.leaf_by_cost},
         {20, float(config.costs.traversal)},
         {21, float(config.costs.intersection)},
-        {22, leaf_range_of(lanes, config)},
+        {22, leaf_range},
         {25, lanes},
         {23, config.split == Split::spatial_median},
         {24, config.max_depth},

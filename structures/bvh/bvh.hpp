@@ -11,9 +11,6 @@
 // deterministic.
 #pragma once
 
-#include <memory>
-#include <optional>
-
 #include "structures/bvh/tree.hpp"
 #include "structures/geometry/triangle_mesh.hpp"
 #include "taskpool/pool/job.hpp"

@@ -62,13 +62,17 @@ gpu::Kernel make_kernel(gpu::Device& device, const gpu::Shader& shader, const Cl
         {6, client.chunk_iterations},
         {7, std::min(kIdlePolls, iteration_budget(device, config) / 2)},
         {8, config.trace_capacity > 0},
-        {9, device.info().loop_limit ? kEngineLoops + client.loops : 1u},
+        {9, turn_iterations(device, client.loops)},
     };
     constants.insert(constants.end(), client.constants.begin(), client.constants.end());
     return gpu::Kernel(device, shader, constants);
 }
 
 }  // namespace
+
+std::uint32_t turn_iterations(const gpu::Device& device, std::uint32_t loops) {
+    return device.info().loop_limit > 0 ? kEngineLoops + loops : 1;
+}
 
 Policy policy_from(std::string_view name) {
     if (name == "scan") return Policy::scan;

@@ -49,6 +49,10 @@ struct ClientSpec {
     std::uint32_t loops = 16;
 };
 
+/// Loop iterations that a turn of a loop whose text holds `loops` loops, the engine's beside them,
+/// is charged (kTurnIterations there): 1 on drivers that do not cut loops.
+std::uint32_t turn_iterations(const gpu::Device& device, std::uint32_t loops);
+
 /// First step of the root task.
 struct RootStart {
     std::uint32_t phase = 0, step = 0, chunks = 0;

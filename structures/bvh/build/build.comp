@@ -46,7 +46,7 @@ struct Client {
     Primitives primitives[2];  // sorted from one into the other
     PoolUints order;           // output: their triangles in leaf order
     Nodes nodes;
-    Scratch scratch;  // of large tasks, then two words per chunk for chunk counts
+    Scratch scratch;  // see scratch.glsl
     Input mesh;
 };
 
@@ -88,7 +88,7 @@ Next finish_step(inout Task task, uint phase, uint step) {
         case kPhaseBins: return after_bins(task, step);
         case kPhaseCount: return after_count(task, step);
         case kPhasePartition: return after_partition(task);
-        case kPhaseSmall: return after_small(task);
+        case kPhaseSmall: return split_task(task);
     }
     return next_end();
 }

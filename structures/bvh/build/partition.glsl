@@ -9,15 +9,6 @@ bool goes_left(Task task, uint place, vec3 center) {
     return component(center, task.axis) <= task.middle;
 }
 
-/// Sum of the lanes' values up to this one; by shuffles, as lavapipe makes scans and ballots of loops.
-uint sum_to_here(uint mine) {
-    [[unroll]] for (uint apart = 1; apart < kLanes; apart *= 2) {
-        const uint before = subgroupShuffle(mine, gl_SubgroupInvocationID - apart);
-        mine += gl_SubgroupInvocationID < apart ? 0 : before;
-    }
-    return mine;
-}
-
 /// Splits [begin, end) of the task's range to places from `left` up and from `right` down. Returns how
 /// many went left; `boxes` become those of the left and the right primitives and of their centres, in
 /// the order of take_children().
@@ -81,13 +72,14 @@ void take_children(inout Task task, KeyBox boxes[4]) {
 }
 
 /// Brings the primitives of [begin, end) nearer: many misses at a time, where passing them one by one
-/// would wait for each. Makes some use of what it reads, lest it be left out.
+/// would wait for each. Every other one will do: two share a cache line. Makes some use of what it reads,
+/// lest it be left out, and the same in all lanes, as the count of iterations has to be.
 void touch(Task task, uint begin, uint end) {
     Primitives primitives = primitives_of(task.side);
     uint seen = 0;
     for (uint i = begin; i < end; i += 2 * kLanes)
         seen |= primitives.at[min(i + 2 * gl_SubgroupInvocationID, end - 1)].id;
-    pool_spend(min(seen, 1) + kChunkPrimitives / (2 * kLanes));
+    pool_spend((subgroupAny(seen != 0) ? 1 : 0) + kChunkPrimitives / (2 * kLanes));
 }
 
 /// Looks that a task gets: finer ones pay where much is split, and where the tree is nearly done.
@@ -141,13 +133,14 @@ void split_chunk(inout Task task, uint phase, uint step, uint begin, uint end) {
             }
             task.left_count = left_count;
             take_children(task, boxes);
-            if (!subtree) return;
+            pool_order_lanes();  // the next turn reads what other lanes moved
             if (left_count == 0 || left_count == task.count) {
                 // The middle of the centres separated nothing.
                 task.rule = kRuleHalve;
                 task.looks = false;
                 continue;
             }
+            if (!subtree) return;
             write_inner_node(task);
             // The smaller child comes first: at most log2(kSubtreePrimitives / kLeafRange) wait.
             const uint smaller = 2 * left_count <= task.count ? 0 : 1;

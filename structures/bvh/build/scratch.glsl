@@ -45,6 +45,15 @@ void fetch_boxes(uint first, out KeyBox boxes[4]) {
     }
 }
 
+/// Sum of the lanes' values up to this one; by shuffles, as lavapipe makes scans and ballots of loops.
+uint sum_to_here(uint mine) {
+    [[unroll]] for (uint apart = 1; apart < kLanes; apart *= 2) {
+        const uint before = subgroupShuffle(mine, gl_SubgroupInvocationID - apart);
+        mine += gl_SubgroupInvocationID < apart ? 0 : before;
+    }
+    return mine;
+}
+
 /// Exclusive scan over the chunks of a range, of the sum of each one's `words` words from `from` on;
 /// leaves it in their first words and returns the sum of all.
 uint scan_chunks(uint first, uint count, uint from, uint words) {
@@ -57,9 +66,9 @@ uint scan_chunks(uint first, uint count, uint from, uint words) {
         uint mine = 0;
         [[unroll]] for (uint k = 0; k < kBins; ++k)
             mine += used && k < words ? pool.client.scratch.words[word + from + k] : 0;
-        const uint before = subgroupExclusiveAdd(mine);
-        if (used) pool.client.scratch.words[word] = sum + before;
-        sum += subgroupAdd(mine);
+        const uint to_here = sum_to_here(mine);
+        if (used) pool.client.scratch.words[word] = sum + to_here - mine;
+        sum += subgroupShuffle(to_here, kLanes - 1);
         pool_spend(1);
     }
     pool_order_lanes();

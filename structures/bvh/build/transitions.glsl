@@ -2,7 +2,7 @@
 
 uint chunks_of(uint count) { return (count + kChunkPrimitives - 1) / kChunkPrimitives; }
 
-/// The first step of a task that has its range and bounds; its rule is set by child_of().
+/// The first step of a task that has its range and bounds; its rule is set.
 Next first_step(Task task) {
     if (task.count <= kSubtreePrimitives) return next_step(kPhaseSubtree, 0, 1);
     if (task.count <= kChunkPrimitives) return next_step(kPhaseSmall, 0, 1);
@@ -68,14 +68,6 @@ Next after_count(inout Task task, uint step) {
 Next split_task(inout Task task) {
     write_inner_node(task);
     return next_spawn(2);
-}
-
-/// The middle of the centres may have separated nothing: the range is halved by place then.
-Next after_small(inout Task task) {
-    if (task.left_count != 0 && task.left_count != task.count) return split_task(task);
-    task.rule = kRuleHalve;
-    task.looks = false;
-    return next_step(kPhaseSmall, 0, 1);
 }
 
 Next after_partition(inout Task task) {
