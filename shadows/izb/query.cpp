@@ -163,8 +163,8 @@ void Query::submit(QueryResult& result, const std::function<void(Recorder&)>& re
 void Query::allocate_points(std::uint32_t count) {
     for (Buffer* buffer : {&places_, &order_})
         grow(device_, *buffer, std::size_t{count} * 4, "izb points");
-    // Becomes the list of unsure pairs. One triangle alone always finds room: its entries have no
-    // cell in common.
+    // Becomes the list of unsure pairs. One triangle alone always finds room: no two of its entries
+    // share a cell, so that it meets no point twice.
     grow(device_, keys_, std::size_t{count} * 8, "izb keys");
     grow(device_, binned_, count * kBinnedBytes, "izb binned points");
     grow(device_, visible_, count / 8, "visibility");
@@ -232,7 +232,7 @@ bool Query::shadow_batch(const Push& push, std::uint32_t first, std::uint32_t co
     const std::uint32_t lanes = device_.subgroup_size();
     const std::uint32_t entry_capacity = std::uint32_t(entries_.size() / sizeof(IzbEntry));
     const std::uint32_t range_capacity = std::uint32_t(ranges_.size() / sizeof(IzbRange));
-    const std::uint32_t unsure_capacity = std::uint32_t(keys_.size() / 8);
+    const std::uint32_t unsure_capacity = push.point_count;
     const Kernels& kernel = kernels();
     // Workgroups over `items`, one per lane: as many as run at once, or one for each chunk.
     const auto groups = [&](std::uint32_t items) {

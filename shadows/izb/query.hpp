@@ -10,11 +10,12 @@
 // above the cells. Each triangle is rasterised conservatively: cells whose points it may shadow,
 // and which are not all in front of its plane or shadowed already, have their points tested, first
 // by linear functions with error bounds (caster.glsl), and where those cannot decide by the exact
-// test (shadows/occlusion.glsl), whose last resort has a pass of its own. After G. Johnson, J. Lee, C. Burns and W. Mark, "The irregular
-// z-buffer: hardware acceleration for irregular data structures", 2005, and T. Aila and S. Laine,
-// "Alias-free shadow maps", 2004; the compute version after C. Wyman, R. Hoetzlein and A. Lefohn,
-// "Frustum-traced raster shadows", 2015. Deviations: points are compacted per cell instead of
-// linked in lists, and triangles that cross planes through the light are not clipped.
+// test (shadows/occlusion.glsl), whose last resort has a pass of its own. After G. Johnson, J. Lee,
+// C. Burns and W. Mark, "The irregular z-buffer: hardware acceleration for irregular data
+// structures", 2005, and T. Aila and S. Laine, "Alias-free shadow maps", 2004; the compute version
+// after C. Wyman, R. Hoetzlein and A. Lefohn, "Frustum-traced raster shadows", 2015. Deviations:
+// points are compacted per cell instead of linked in lists, and triangles that cross planes through
+// the light are not clipped.
 //
 // Lists that turn out too short are used with fewer triangles at a time; nothing is dropped.
 #pragma once
@@ -66,8 +67,7 @@ class Query {
 
   private:
     struct Kernels {
-        taskpool::gpu::Kernel bounds, count, scatter, reduce, cast, test, ranges, unsure,
-            answer;
+        taskpool::gpu::Kernel bounds, count, scatter, reduce, cast, test, ranges, unsure, answer;
     };
     struct Push;
 

@@ -53,8 +53,8 @@ void turn_to(Held held, uint from) {
     entry_caster = broadcast(held.caster, from);
 }
 
-// Leaves a point to unsure.comp, against the entry at hand. A list that has overflowed is not counted
-// further, lest the count wraps.
+// Leaves a point to unsure.comp, against the entry at hand. A list that has overflowed is not
+// counted further, lest the count wraps.
 void leave_unsure(uint place) {
     uint index = push.status.at.unsure_count;
     if (index <= push.job.y) index = atomicAdd(push.status.at.unsure_count, 1u);
