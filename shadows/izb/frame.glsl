@@ -22,6 +22,7 @@ layout(constant_id = 1) const bool kDirectional = false;
 layout(constant_id = 2) const bool kStatistics = false;
 layout(constant_id = 3) const uint kChunksPerGroup = 0xffffffffu;
 layout(constant_id = 4) const uint kBatchLimit = 0xffffffffu;  // batches of points per invocation
+layout(constant_id = 5) const uint kChunkEntries = 64;         // at most one per lane
 
 // A point in its cell: u, v, k, and its primitive, or kNoPrimitive once it is known to be shadowed.
 struct BinnedPoint {

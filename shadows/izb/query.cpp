@@ -108,19 +108,27 @@ std::size_t Query::memory_bytes() const {
     return bytes;
 }
 
+std::uint32_t Query::chunk_entries() const {
+    // Where loops are cut, at 65,535 iterations in all, an invocation gets one chunk and tests a
+    // quarter of that in batches of points. On top of these, an entry of 256 x 8 cells takes 2
+    // iterations per cell and at most 600 for blocks of cells, below 5,000; and one for each
+    // kRangePoints points per lane, of which there are few: 4 entries leave room for 50 million.
+    return device_.info().loop_limit > 0 ? 4 : device_.subgroup_size();
+}
+
 const Query::Kernels& Query::kernels() {
     const bool directional = light_.type == Light::Type::directional;
     Kernels& found = kernels_[directional];
     if (found.bounds.handle()) return found;
-    // Where loops are cut, an invocation gets one chunk and tests at most so many batches of
-    // points; its other loops, over blocks of cells, take 20,000 iterations at most.
-    const bool cut = device_.info().loop_limit > 0;
+    const std::uint32_t limit = device_.info().loop_limit;
+    const bool cut = limit > 0;
     const auto kernel = [&](const char* path) {
         return Kernel(device_, taskpool::gpu::find_shader(shadows_izb_shaders(), path),
                       {{1, directional},
                        {2, config_.statistics},
                        {3, cut ? 1u : 0xffffffffu},
-                       {4, cut ? 16384u : 0xffffffffu},
+                       {4, cut ? limit / 4 : 0xffffffffu},
+                       {5, chunk_entries()},
                        {9, kTilePoints / device_.subgroup_size()}});
     };
     found = {kernel("shadows/izb/bounds.comp"),  kernel("shadows/izb/count.comp"),
@@ -234,9 +242,9 @@ bool Query::shadow_batch(const Push& push, std::uint32_t first, std::uint32_t co
     const std::uint32_t range_capacity = std::uint32_t(ranges_.size() / sizeof(IzbRange));
     const std::uint32_t unsure_capacity = push.point_count;
     const Kernels& kernel = kernels();
-    // Workgroups over `items`, one per lane: as many as run at once, or one for each chunk.
-    const auto groups = [&](std::uint32_t items) {
-        const std::uint32_t chunks = divide_up(items, lanes);
+    // Workgroups over chunks of `items`: as many as run at once, or one for each chunk.
+    const auto groups = [&](std::uint32_t items, std::uint32_t chunk) {
+        const std::uint32_t chunks = divide_up(items, chunk);
         if (device_.info().loop_limit > 0) return chunks;
         return std::min(chunks, device_.info().persistent_workgroups);
     };
@@ -253,13 +261,14 @@ bool Query::shadow_batch(const Push& push, std::uint32_t first, std::uint32_t co
     if (entries == 0) return true;
     submit(result, [&](Recorder& recorder) {
         dispatch(recorder, kernel.test, push.with(entries, unsure_capacity, range_capacity),
-                 groups(entries));
+                 groups(entries, chunk_entries()));
     });
     const std::uint32_t ranges = status().range_count;
     if (ranges > range_capacity) return false;
     if (ranges > 0)
         submit(result, [&](Recorder& recorder) {
-            dispatch(recorder, kernel.ranges, push.with(ranges, unsure_capacity), groups(ranges));
+            dispatch(recorder, kernel.ranges, push.with(ranges, unsure_capacity),
+                     groups(ranges, lanes));
         });
     const IzbStatus end = status();
     if (end.unsure_count > unsure_capacity) return false;

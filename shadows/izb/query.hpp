@@ -72,6 +72,7 @@ class Query {
     struct Push;
 
     const Kernels& kernels();
+    std::uint32_t chunk_entries() const;  ///< that a workgroup tests in one go
     Push make_push(const Points& points) const;
     void allocate_points(std::uint32_t count);
     void allocate_cells(const Grid& grid);

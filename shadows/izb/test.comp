@@ -105,11 +105,12 @@ void main() {
     test_count = exact_count = 0;
     for (uint taken = 0; taken < kChunksPerGroup; ++taken) {
         uint first = 0;
-        if (lane() == 0) first = atomicAdd(push.status.at.next_entry, gl_SubgroupSize);
+        if (lane() == 0) first = atomicAdd(push.status.at.next_entry, kChunkEntries);
         first = subgroupBroadcastFirst(first);
         if (first >= push.job.x) break;
         const uint index = first + lane();
-        const Held held = hold(index, index < push.job.x, origin, scale, tilt);
+        const bool used = lane() < kChunkEntries && index < push.job.x;
+        const Held held = hold(index, used, origin, scale, tilt);
         uvec4 votes = subgroupBallot(held.used);
         while (true) {
             turn_to(held, take_lane(votes));
