@@ -47,7 +47,7 @@ struct Rectangle {
     vec2 lower, upper;
 };
 
-Corners corners_of(Triangle t, vec3 origin, float scale, uint face) {
+Corners corners_of(IzbTriangle t, vec3 origin, float scale, uint face) {
     return Corners(to_face((t.a - origin) * scale, face), to_face((t.b - origin) * scale, face),
                    to_face((t.c - origin) * scale, face), to_face((t.b - t.a) * scale, face),
                    to_face((t.c - t.b) * scale, face), to_face((t.a - t.c) * scale, face));
@@ -187,10 +187,12 @@ Caster broadcast(Caster caster, uint from) {
 }
 
 // The rectangle of a block of cells, wide enough to hold their points.
-Rectangle cells_rectangle(uint face, uvec2 first, uvec2 last) {
-    const vec2 lower = push.frame.at.faces[face].lower, cell = push.frame.at.faces[face].cell;
-    const vec2 pad = push.frame.at.faces[face].pad;
+Rectangle cells_rectangle(vec2 lower, vec2 cell, vec2 pad, uvec2 first, uvec2 last) {
     return Rectangle(lower + vec2(first) * cell - pad, lower + vec2(last + 1u) * cell + pad);
+}
+Rectangle cells_rectangle(uint face, uvec2 first, uvec2 last) {
+    return cells_rectangle(push.frame.at.faces[face].lower, push.frame.at.faces[face].cell,
+                           push.frame.at.faces[face].pad, first, last);
 }
 
 #endif

@@ -24,19 +24,10 @@ layout(constant_id = 3) const uint kChunksPerGroup = 0xffffffffu;
 layout(constant_id = 4) const uint kBatchLimit = 0xffffffffu;  // batches of points per invocation
 layout(constant_id = 5) const uint kChunkEntries = 64;         // at most one per lane
 
-// A point in its cell: u, v, k, and its primitive, or kNoPrimitive once it is known to be shadowed.
-struct BinnedPoint {
-    float u, v, k;
-    uint primitive;
-};
-struct Triangle {
-    vec3 a, b, c;
-    uint primitive;
-};
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FrameRef { IzbFrame at; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Extents { IzbExtent at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Binned { BinnedPoint at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Triangles { Triangle at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ExtentsRef { IzbExtents at; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Binned { IzbPoint at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Triangles { IzbTriangle at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Entries { IzbEntry at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Ranges { IzbRange at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Status { IzbStatus at; };
@@ -83,8 +74,10 @@ vec3 to_face(vec3 v, uint face) {
     return vec3(permuted.xy, (face & 1u) != 0 ? -permuted.z : permuted.z);
 }
 
+const uint kNowhere = kFaces + 1u;
+
 struct Projected {
-    uint face;  // kFaces: the point cannot be shadowed (it is the light) or has no finite place
+    uint face;  // kFaces: the point cannot be shadowed, it is the light; kNowhere: it overflows
     float u, v, k;
     float reach;  // 1-norm in the frame
 };
@@ -97,21 +90,21 @@ Projected project(vec3 p, vec3 origin, float scale, vec2 tilt, uint only_face) {
         result.v = q.y - q.z * tilt.y;
         result.k = q.z;
         result.reach = norm1(q);
-        result.face = result.reach < 0.25 * kHuge ? only_face : kFaces;  // u and v are finite
+        result.face = result.reach < 0.25 * kHuge ? only_face : kNowhere;  // u and v are finite
         return result;
     }
     const vec3 d = p - origin, size = abs(d);
     const uint axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-    const float largest = max(max(size.x, size.y), size.z);
     const float low = axis == 0 ? d.x : axis == 1 ? d.y : d.z;
     const uint face = 2 * axis + (low < 0 ? 1 : 0);
     const vec3 q = to_face(d, face);
     result.u = q.x / q.z;
     result.v = q.y / q.z;
     result.k = min(1.0 / (q.z * scale), kLargestKey);
-    result.reach = norm1(q) * scale;
-    // NaN fails too.
-    result.face = largest > 0 && largest < kHuge ? face : kFaces;
+    const float distance = norm1(q);
+    result.reach = distance * scale;
+    // NaN is nowhere, too.
+    result.face = p == origin ? kFaces : distance > 0 && distance < kHuge ? face : kNowhere;
     return result;
 }
 

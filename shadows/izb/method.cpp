@@ -49,7 +49,7 @@ Samples IzbMethod::query(const Points& points, Visibility& visible) {
     const QueryResult result = query_.run(points, visible);
     Samples samples{{"query_ms", result.milliseconds, "ms"},
                     {"memory_bytes", double(query_.memory_bytes()), "bytes"},
-                    {"incomplete", 0},
+                    {"incomplete", double(result.incomplete)},
                     {"cells", double(result.cells)},
                     {"entries", double(result.entries)},
                     {"ranges", double(result.ranges)},

@@ -1,6 +1,6 @@
 // Testing the points of cells against a triangle: what the kernels over entries and over ranges of
 // points share. A lane holds an entry; the subgroup turns to them one after the other. What double
-// precision cannot tell goes to a list with room for job.y pairs.
+// precision cannot tell goes to a list with room for job.x pairs.
 #ifndef SHADOWS_IZB_TEST_GLSL
 #define SHADOWS_IZB_TEST_GLSL
 #include "shadows/izb/caster.glsl"
@@ -11,14 +11,14 @@ struct Held {
     uint index;
     uint face;
     uvec2 first, last;
-    Triangle triangle;
+    IzbTriangle triangle;
     Caster caster;
 };
 
 // The entry at hand, the same in all lanes.
 uint entry_index, entry_face;
 uvec2 entry_first, entry_last;
-Triangle entry_triangle;
+IzbTriangle entry_triangle;
 Caster entry_caster;
 
 uint batches_left;  // of points that this invocation may still test
@@ -56,9 +56,9 @@ void turn_to(Held held, uint from) {
 // Leaves a point to unsure.comp, against the entry at hand. A list that has overflowed is not
 // counted further, lest the count wraps.
 void leave_unsure(uint place) {
-    uint index = push.status.at.unsure_count;
-    if (index <= push.job.y) index = atomicAdd(push.status.at.unsure_count, 1u);
-    if (index >= push.job.y) return;
+    uint index = push.status.at.counts[kUnsurePairs];
+    if (index <= push.job.x) index = atomicAdd(push.status.at.counts[kUnsurePairs], 1u);
+    if (index >= push.job.x) return;
     push.keys.at[2 * index] = entry_index;
     push.keys.at[2 * index + 1] = place;
 }
@@ -72,7 +72,7 @@ float test_points(uint begin, uint end) {
     while (true) {
         const uint place = first + lane();
         uint verdict = kMiss;
-        BinnedPoint p = BinnedPoint(0, 0, kHuge, kNoPrimitive);
+        IzbPoint p = IzbPoint(0, 0, kHuge, kNoPrimitive);
         if (place < end) p = push.binned.at[place];
         const bool alive = p.primitive != kNoPrimitive;
         if (alive && p.primitive != entry_triangle.primitive)

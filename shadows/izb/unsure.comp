@@ -1,15 +1,15 @@
-// Decides the points that test.comp and ranges.comp left over, as double precision cannot: a pair of
-// entry and point per lane, job.x at most, so that each invocation runs the loops of a single
-// decision in error-free sums.
+// Decides the points that test.comp and ranges.comp left over, since double precision cannot: a pair
+// of entry and point per lane, so that each invocation runs the loops of a single decision in
+// error-free sums.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shadows/izb/frame.glsl"
 
 void main() {
     const uint index = workgroup() * gl_SubgroupSize + lane();
-    if (index >= push.job.x) return;
+    if (index >= push.status.at.counts[kUnsurePairs]) return;
     const uint entry = push.keys.at[2 * index], place = push.keys.at[2 * index + 1];
-    const Triangle t = push.triangles.at[push.entries.at[entry].caster & 0x1fffffffu];
+    const IzbTriangle t = push.triangles.at[push.entries.at[entry].caster & 0x1fffffffu];
     if (occludes_exactly(segment_of(place), t.a, t.b, t.c))
         push.binned.at[place].primitive = kNoPrimitive;
 }

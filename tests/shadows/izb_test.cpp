@@ -454,6 +454,22 @@ TEST_F(IzbShadow, WhatDoublePrecisionCannotTell) {
     EXPECT_GT(answer.result.unsure, 0u);
 }
 
+TEST_F(IzbShadow, PointsWhosePlaceOverflowsAreCounted) {
+    Scene scene = soup(47, 100, 0.5f, 1000);
+    scene.light.vector = {-2e38f, 0, 0};
+    for (std::uint32_t i : {3u, 500u, 999u}) set_point(scene, i, {3e38f, 0, 0});
+    set_point(scene, 4, {kNan, 0, 0});
+    const std::vector<bool> expected = brute_force(scene);
+    const Answer far = run(scene);
+    EXPECT_EQ(far.result.incomplete, 4u);
+    EXPECT_LE(differences(far.visible, expected), 4u);
+    EXPECT_EQ(run(directional(scene, {0, 1, 0})).result.incomplete, 4u);
+    // A point at the light has its answer.
+    scene = soup(48, 100, 0.5f, 1000);
+    set_point(scene, 7, scene.light.vector);
+    EXPECT_EQ(run(scene).result.incomplete, 0u);
+}
+
 TEST_F(IzbShadow, StatisticsCountWork) {
     const Scene scene = soup(43, 500, 0.3f, 3000);
     const Answer plain = run(scene), counted = run(scene, {.statistics = true});
