@@ -17,7 +17,8 @@ using namespace shadows;
 using shadows::bvh::Query;
 using shadows::bvh::QueryConfig;
 using shadows::bvh::QueryKind;
-using shadows::bvh::QueryStatus;
+using shadows::tiles::Limits;
+using shadows::tiles::QueryStatus;
 using structures::geometry::Light;
 using structures::geometry::TriangleMesh;
 using tests::add_box;
@@ -57,7 +58,7 @@ void set_point(Scene& scene, std::uint32_t x, std::uint32_t y, glm::vec3 p,
 struct Result {
     Visibility visible;
     QueryStatus status;
-    std::vector<bvh::PointCost> costs;
+    std::vector<shadows::tiles::PointCost> costs;
 };
 
 Result run(const Scene& scene, const QueryConfig& config) {
@@ -94,11 +95,10 @@ std::vector<bool> expected_lit(const Scene& scene) {
 }
 
 /// All kinds equal the exact test.
-void check(const Scene& scene, const QueryConfig& limits = {}) {
+void check(const Scene& scene, const Limits& limits = {}) {
     const std::vector<bool> expected = expected_lit(scene);
     for (QueryKind kind : kKinds) {
-        QueryConfig config = limits;
-        config.kind = kind;
+        const QueryConfig config{.kind = kind, .limits = limits};
         const Result result = run(scene, config);
         std::size_t wrong = 0;
         for (std::size_t i = 0; i < expected.size(); ++i)
@@ -287,19 +287,18 @@ TEST_F(BvhShadow, CoplanarReceiversAndOwnTriangle) {
 
 TEST_F(BvhShadow, TinyLimitsLoseNothing) {
     const Scene scene = soup(29, 3000, 0.1f, 64, 48);
-    for (const QueryConfig& limits :
-         {QueryConfig{.stack = 1}, QueryConfig{.list = 64}, QueryConfig{.steps = 5},
-          QueryConfig{.density = 0}, QueryConfig{.stack = 1, .density = 1000}})
+    for (const Limits& limits : {Limits{.stack = 1}, Limits{.scratch = 64}, Limits{.steps = 5},
+                                 Limits{.density = 0}, Limits{.stack = 1, .density = 1000}})
         check(scene, limits);
-    EXPECT_GT(run(scene, {.stack = 1}).status.stack_full, 0u);
-    EXPECT_GT(run(scene, {.steps = 5}).status.step_limit, 0u);
-    EXPECT_GT(run(scene, {.steps = 5}).status.deferred_points, 0u);
+    EXPECT_GT(run(scene, {.limits = {.stack = 1}}).status.stack_full, 0u);
+    EXPECT_GT(run(scene, {.limits = {.steps = 5}}).status.step_limit, 0u);
+    EXPECT_GT(run(scene, {.limits = {.steps = 5}}).status.deferred_points, 0u);
     // A beam that meets too many triangles gives way to packets, and to packets alone.
-    EXPECT_GT(run(scene, {.density = 0}).status.packet_tiles, 0u);
-    EXPECT_EQ(run(scene, {.density = 0}).status.deferred_points, 0u);
-    EXPECT_EQ(run(scene, {.density = 100'000}).status.packet_tiles, 0u);
+    EXPECT_GT(run(scene, {.limits = {.density = 0}}).status.packet_tiles, 0u);
+    EXPECT_EQ(run(scene, {.limits = {.density = 0}}).status.deferred_points, 0u);
+    EXPECT_EQ(run(scene, {.limits = {.density = 100'000}}).status.packet_tiles, 0u);
     // The per-point walk has nobody behind it: it must say that it failed.
-    EXPECT_GT(run(scene, {.kind = QueryKind::lane, .point_steps = 2}).status.incomplete, 0u);
+    EXPECT_GT(run(scene, {.kind = QueryKind::lane, .limits = {.point_steps = 2}}).status.incomplete, 0u);
 }
 
 TEST_F(BvhShadow, ManyEqualTriangles) {
@@ -324,12 +323,12 @@ TEST_F(BvhShadow, StatisticsCountWork) {
     const Scene scene = soup(37, 500, 0.2f, 48, 48);
     for (QueryKind kind : kKinds) {
         const Result plain = run(scene, {.kind = kind});
-        const Result counted = run(scene, {.kind = kind, .statistics = true});
+        const Result counted = run(scene, {.kind = kind, .limits = {.statistics = true}});
         EXPECT_EQ(plain.visible.words, counted.visible.words);
         EXPECT_TRUE(plain.costs.empty());
         ASSERT_EQ(counted.costs.size(), scene.points.x.size());
         std::uint64_t nodes = 0;
-        for (const bvh::PointCost& cost : counted.costs) nodes += cost.nodes;
+        for (const shadows::tiles::PointCost& cost : counted.costs) nodes += cost.nodes;
         EXPECT_GT(nodes, 0u);
     }
 }
