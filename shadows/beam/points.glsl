@@ -18,6 +18,18 @@ uint tile_point(uint tile, uint k) {
 }
 bool has_bit(uint bits, uint k) { return (bits >> k & 1u) != 0; }
 
+// Takes the lowest lane out of a vote that is not empty.
+uint take_lane(inout uvec4 votes) {
+    if (kLanes <= 32 || votes.x != 0) {
+        const uint lane = findLSB(votes.x);
+        votes.x &= votes.x - 1u;
+        return lane;
+    }
+    const uint lane = findLSB(votes.y);
+    votes.y &= votes.y - 1u;
+    return 32u + lane;
+}
+
 // Reductions by exchange are cheaper than the driver's own on narrow subgroups.
 float reduce_min(float value) {
     if (kLanes > 16) return subgroupMin(value);

@@ -52,8 +52,8 @@ void main() {
     const float scale = push.frame.at.scale;
     const vec2 tilt = push.frame.at.tilt;
     const bool used = index < push.job.y;
-    IzbTriangle triangle;
-    if (used) triangle = push.triangles.at[index];
+    CornerTriangle triangle;
+    if (used) triangle = corner_triangle(push.triangles, index);
     for (uint face = 0; face < kFaces; ++face) {
         if (push.frame.at.faces[face].points == 0) continue;
         bool keep = used;
@@ -90,7 +90,7 @@ void main() {
         uint base = 0;
         if (lane() == 0) base = reserve(total);
         base = subgroupBroadcastFirst(base) + before;
-        const uint caster = index | face << 29;
+        const uint caster = index | face << kFaceShift;
         for (uint i = 0; i < count; ++i) {
             if (base + i >= push.job.z) break;
             uvec2 first = cells.first, last = cells.last;

@@ -47,7 +47,7 @@ struct Rectangle {
     vec2 lower, upper;
 };
 
-Corners corners_of(IzbTriangle t, vec3 origin, float scale, uint face) {
+Corners corners_of(CornerTriangle t, vec3 origin, float scale, uint face) {
     return Corners(to_face((t.a - origin) * scale, face), to_face((t.b - origin) * scale, face),
                    to_face((t.c - origin) * scale, face), to_face((t.b - t.a) * scale, face),
                    to_face((t.c - t.b) * scale, face), to_face((t.a - t.c) * scale, face));

@@ -16,6 +16,8 @@
 #include "shadows/beam/points.glsl"
 #include "shadows/izb/izb_shared.h"
 #include "shadows/occlusion.glsl"
+#include "structures/geometry/corner_triangles.glsl"
+#include "taskpool/primitives/ordered.glsl"
 layout(local_size_x_id = 0) in;
 
 layout(constant_id = 1) const bool kDirectional = false;
@@ -27,7 +29,6 @@ layout(constant_id = 5) const uint kChunkEntries = 64;         // at most one pe
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FrameRef { IzbFrame at; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ExtentsRef { IzbExtents at; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Binned { IzbPoint at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Triangles { IzbTriangle at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Entries { IzbEntry at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Ranges { IzbRange at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Status { IzbStatus at; };
@@ -42,7 +43,7 @@ layout(push_constant, scalar) uniform Push {
     UintArray places;    // its rank within the cell; then its place in the order of cells
     UintArray order;     // the point at each place
     Binned binned;       // in the order of cells
-    Triangles triangles;
+    CornerTriangles triangles;
     Entries entries;
     Ranges ranges;
     Status status;
@@ -56,15 +57,6 @@ const uint kNoCell = 0xffffffffu;
 const uint kNobody = 0xffffffffu;  // farthest: no point, or none that is not known to be shadowed
 const float kHuge = 3.0e38;
 const float kLargestKey = 1e30;  // point light: points that are nearer still get this k
-
-// Floats as words of the same order.
-uint ordered(float value) {
-    const uint bits = floatBitsToUint(value);
-    return bits ^ ((bits & 0x80000000u) != 0 ? 0xffffffffu : 0x80000000u);
-}
-float from_ordered(uint word) {
-    return uintBitsToFloat(word ^ ((word & 0x80000000u) != 0 ? 0x80000000u : 0xffffffffu));
-}
 
 float norm1(vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
 

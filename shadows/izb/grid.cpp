@@ -4,16 +4,14 @@
 #include <bit>
 #include <cmath>
 
+#include "taskpool/primitives/ordered.hpp"
+
 namespace shadows::izb {
 namespace {
 
 using structures::geometry::Aabb;
 using structures::geometry::Light;
-
-/// Inverse of ordered() in frame.glsl.
-float from_ordered(std::uint32_t word) {
-    return std::bit_cast<float>(word ^ (word & 0x80000000u ? 0x80000000u : 0xffffffffu));
-}
+using taskpool::primitives::from_ordered;
 
 /// The power of two that takes `size` to between 1 and 2, or next to that where it has none.
 float scale_for(float size) {

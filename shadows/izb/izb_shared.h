@@ -44,7 +44,7 @@ struct IzbFrame {
     IzbFace faces[kFaces];
 };
 
-// Extent of the points of one face, floats as ordered words (see ordered() in frame.glsl), of which
+// Extent of the points of one face, floats as ordered words (ordered.glsl), of which
 // the lower ones are stored complemented: all grow from 0.
 struct IzbExtent {
     uint not_lower_u, not_lower_v, upper_u, upper_v, reach, points;
@@ -62,14 +62,10 @@ struct IzbPoint {
     uint primitive;
 };
 
-struct IzbTriangle {
-    vec3 a, b, c;
-    uint primitive;
-};
-
+GROVE_CONSTANT uint kFaceShift = 29u, kCasterMask = (1u << kFaceShift) - 1u;
 // A triangle and cells that may hold points it occludes.
 struct IzbEntry {
-    uint caster;  // triangle | face << 29
+    uint caster;  // triangle | face << kFaceShift
     uint lower;   // first cell: x | y << 16
     uint upper;   // last cell
     float reach;  // largest 1-norm of the cells' points
@@ -100,7 +96,7 @@ struct IzbStatus {
 static_assert(sizeof(IzbFace) == 104);
 static_assert(sizeof(IzbFrame) == 28 + kFaces * sizeof(IzbFace));
 static_assert(sizeof(IzbExtents) == kFaces * 24 + 4);
-static_assert(sizeof(IzbPoint) == 16 && sizeof(IzbTriangle) == 40);
+static_assert(sizeof(IzbPoint) == 16);
 static_assert(sizeof(IzbEntry) == 16 && sizeof(IzbRange) == 12);
 static_assert(sizeof(IzbStatus) == 72 && offsetof(IzbStatus, groups) == 36);
 }  // namespace shadows::izb

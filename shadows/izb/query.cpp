@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <vector>
+
+#include "structures/geometry/corner_triangle.h"
 
 std::span<const taskpool::gpu::Shader> shadows_izb_shaders();
 
 namespace shadows::izb {
 
+using structures::geometry::CornerTriangle;
 using structures::geometry::Light;
 using structures::geometry::TriangleMesh;
 using taskpool::gpu::Buffer;
@@ -38,8 +40,6 @@ struct Query::Push {
 };
 
 namespace {
-
-bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 constexpr std::uint32_t kMaxGroups = 32768;  // of one dimension of a dispatch
 constexpr std::uint32_t kRunPoints = 4096;   // of one workgroup that goes through the points
@@ -72,26 +72,23 @@ Query::Query(taskpool::gpu::Device& device, const QueryConfig& config)
       status_(device, sizeof(IzbStatus), "izb status") {}
 
 void Query::prepare(const TriangleMesh& mesh) {
-    std::vector<IzbTriangle> triangles;
+    std::vector<CornerTriangle> triangles;
     bounds_ = {};
     for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
         const glm::vec3 a = mesh.corner(t, 0), b = mesh.corner(t, 1), c = mesh.corner(t, 2);
-        if (!finite(a) || !finite(b) || !finite(c) || mesh.degenerate(t)) continue;
+        if (mesh.degenerate(t)) continue;
         triangles.push_back({a, b, c, t});
         for (const glm::vec3& corner : {a, b, c}) bounds_.grow(corner);
     }
-    if (triangles.size() >= 1u << 29)
+    if (triangles.size() > kCasterMask)
         throw std::invalid_argument("izb: 2^29 triangles or more; use fewer");
     triangle_count_ = static_cast<std::uint32_t>(triangles.size());
-    triangles_ = taskpool::gpu::make_buffer<IzbTriangle>(device_, triangles, "izb triangles");
+    triangles_ = taskpool::gpu::make_buffer<CornerTriangle>(device_, triangles, "izb triangles");
     batch_ = triangle_count_;
 }
 
 void Query::set_light(const Light& light) {
-    if (!finite(light.vector))
-        throw std::invalid_argument("izb: the light's vector is not finite; give finite numbers");
-    if (light.type == Light::Type::directional && light.vector == glm::vec3(0))
-        throw std::invalid_argument("izb: the light's direction is 0; give any other");
+    structures::geometry::require_usable(light);
     light_ = light;
     batch_ = triangle_count_;
     if (triangle_count_ == 0) return;

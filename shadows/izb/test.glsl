@@ -11,14 +11,14 @@ struct Held {
     uint index;
     uint face;
     uvec2 first, last;
-    IzbTriangle triangle;
+    CornerTriangle triangle;
     Caster caster;
 };
 
 // The entry at hand, the same in all lanes.
 uint entry_index, entry_face;
 uvec2 entry_first, entry_last;
-IzbTriangle entry_triangle;
+CornerTriangle entry_triangle;
 Caster entry_caster;
 
 uint batches_left;  // of points that this invocation may still test
@@ -31,10 +31,10 @@ Held hold(uint index, bool used, vec3 origin, float scale, vec2 tilt) {
     held.face = 0;
     if (used) {
         const IzbEntry entry = push.entries.at[index];
-        held.face = entry.caster >> 29;
+        held.face = entry.caster >> kFaceShift;
         held.first = uvec2(entry.lower & 0xffffu, entry.lower >> 16);
         held.last = uvec2(entry.upper & 0xffffu, entry.upper >> 16);
-        held.triangle = push.triangles.at[entry.caster & 0x1fffffffu];
+        held.triangle = corner_triangle(push.triangles, entry.caster & kCasterMask);
         held.caster = make_caster(corners_of(held.triangle, origin, scale, held.face), tilt,
                                   cells_rectangle(held.face, held.first, held.last), entry.reach);
     }
@@ -104,18 +104,6 @@ void add_statistics() {
         if (atomicAdd(push.status.at.exact_tests.x, exact) > ~exact)
             atomicAdd(push.status.at.exact_tests.y, 1u);
     }
-}
-
-// Takes the lowest lane out of a vote that is not empty.
-uint take_lane(inout uvec4 votes) {
-    if (votes.x != 0) {
-        const uint lane = findLSB(votes.x);
-        votes.x &= votes.x - 1u;
-        return lane;
-    }
-    const uint lane = findLSB(votes.y);
-    votes.y &= votes.y - 1u;
-    return 32u + lane;
 }
 
 #endif

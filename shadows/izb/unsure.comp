@@ -9,7 +9,8 @@ void main() {
     const uint index = workgroup() * gl_SubgroupSize + lane();
     if (index >= push.status.at.counts[kUnsurePairs]) return;
     const uint entry = push.keys.at[2 * index], place = push.keys.at[2 * index + 1];
-    const IzbTriangle t = push.triangles.at[push.entries.at[entry].caster & 0x1fffffffu];
+    const uint caster = push.entries.at[entry].caster & kCasterMask;
+    const CornerTriangle t = corner_triangle(push.triangles, caster);
     if (occludes_exactly(segment_of(place), t.a, t.b, t.c))
         push.binned.at[place].primitive = kNoPrimitive;
 }
