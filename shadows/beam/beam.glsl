@@ -24,6 +24,7 @@
 
 vec3 beam_light;  // position, or direction towards a directional light
 
+#include "shadows/beam/edges.glsl"
 #include "shadows/beam/points.glsl"
 #include "shadows/beam/group.glsl"
 #include "shadows/beam/candidate.glsl"
@@ -115,7 +116,8 @@ void beam_test_triangles(uint index, bool used) {
     if (subgroupAny(verdict == kCovers)) {
         beam_occluded |= beam_group;
         beam_finished = true;
-        const uint by = subgroupShuffle(index, subgroupBallotFindLSB(subgroupBallot(verdict == kCovers)));
+        const uint by =
+            subgroupShuffle(index, subgroupBallotFindLSB(subgroupBallot(verdict == kCovers)));
         if (!subgroupAny(beam_recent == by)) {
             if (beam_recent_count % kLanes == lane()) beam_recent = by;
             ++beam_recent_count;

@@ -1,5 +1,5 @@
-// The points of a tile and its bits, and reductions over a subgroup: part of beam.glsl, and of every
-// kernel that works on tiles.
+// The points of a tile and its bits, and reductions over a subgroup: part of beam.glsl, and of
+// every kernel that works on tiles.
 // A lane holds kSlots points; bit k of a mask stands for its slot k. Arrays are only indexed by
 // unrolled loops, so that they stay in registers.
 #ifndef SHADOWS_BEAM_POINTS_GLSL

@@ -12,12 +12,6 @@
 #include "taskpool/gpu/device.glsl"
 
 #include "taskpool/gpu/shared_types.h"
-
-#include "shadows/beam/points.glsl"
-#include "shadows/izb/izb_shared.h"
-#include "shadows/occlusion.glsl"
-#include "structures/geometry/corner_triangles.glsl"
-#include "taskpool/primitives/ordered.glsl"
 layout(local_size_x_id = 0) in;
 
 layout(constant_id = 1) const bool kDirectional = false;
@@ -25,6 +19,13 @@ layout(constant_id = 2) const bool kStatistics = false;
 layout(constant_id = 3) const uint kChunksPerGroup = 0xffffffffu;
 layout(constant_id = 4) const uint kBatchLimit = 0xffffffffu;  // batches of points per invocation
 layout(constant_id = 5) const uint kChunkEntries = 64;         // at most one per lane
+
+#include "shadows/beam/edges.glsl"
+#include "shadows/beam/points.glsl"
+#include "shadows/izb/izb_shared.h"
+#include "shadows/occlusion.glsl"
+#include "structures/geometry/corner_triangles.glsl"
+#include "taskpool/primitives/ordered.glsl"
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FrameRef { IzbFrame at; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ExtentsRef { IzbExtents at; };
@@ -55,10 +56,7 @@ push;
 
 const uint kNoCell = 0xffffffffu;
 const uint kNobody = 0xffffffffu;  // farthest: no point, or none that is not known to be shadowed
-const float kHuge = 3.0e38;
 const float kLargestKey = 1e30;  // point light: points that are nearer still get this k
-
-float norm1(vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
 
 // From the world's axes to a face's.
 vec3 to_face(vec3 v, uint face) {

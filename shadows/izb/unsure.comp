@@ -1,5 +1,5 @@
-// Decides the points that test.comp and ranges.comp left over, since double precision cannot: a pair
-// of entry and point per lane, so that each invocation runs the loops of a single decision in
+// Decides the points that test.comp and ranges.comp left over, since double precision cannot: a
+// pair of entry and point per lane, so that each invocation runs the loops of a single decision in
 // error-free sums.
 #version 460
 #extension GL_GOOGLE_include_directive : require
