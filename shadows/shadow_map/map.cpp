@@ -188,7 +188,8 @@ std::uint32_t ShadowMap::faces() const {
 
 std::size_t ShadowMap::memory_bytes() const {
     return positions_.size() + triangles_.size() + normals_.size() + casters_.size() +
-           maps_.size() + (target_.handle() ? map_bytes() : 0);
+           fit_buffer_.size() + view_buffer_.size() + maps_.size() +
+           (target_.handle() ? map_bytes() : 0);
 }
 
 }  // namespace shadows::shadow_map
