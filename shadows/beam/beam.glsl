@@ -24,8 +24,8 @@
 
 vec3 beam_light;  // position, or direction towards a directional light
 
-#include "shadows/beam/edges.glsl"
 #include "shadows/beam/points.glsl"
+#include "shadows/beam/edges.glsl"
 #include "shadows/beam/group.glsl"
 #include "shadows/beam/candidate.glsl"
 

@@ -28,6 +28,8 @@ const float kPlaneError = 2.0 * 16.0 / 16777216.0;
 
 vec3 from_world(vec3 p) { return to_beam((p - beam_origin) * beam_scale); }
 
+vec2 range_of(vec3 f) { return range_of(f, beam.lower, beam.upper); }
+
 // Rectangle of u and v that holds every point the triangle may occlude, corners off by the bound
 // above; the whole plane if a corner is not in front of the light.
 void footprint(vec3 a, vec3 b, vec3 c, out vec2 lower, out vec2 upper) {
@@ -106,9 +108,8 @@ uint classify(vec3 a, vec3 b, vec3 c, uint live, out Candidate candidate) {
     const float farthest = norm1(max(beam.points_upper - ra, ra - beam.points_lower));
     float plane_error = kPlaneError * (size * farthest + norm1(normal) * (la + beam.reach));
 
-    const vec2 ab_range = range_of(candidate.edge_ab, beam.lower, beam.upper),
-               bc_range = range_of(candidate.edge_bc, beam.lower, beam.upper),
-               ca_range = range_of(candidate.edge_ca, beam.lower, beam.upper);
+    const vec2 ab_range = range_of(candidate.edge_ab), bc_range = range_of(candidate.edge_bc),
+               ca_range = range_of(candidate.edge_ca);
     const vec3 edge_least = vec3(ab_range.x, bc_range.x, ca_range.x);
     const vec3 edge_most = vec3(ab_range.y, bc_range.y, ca_range.y);
     bool covers = false;

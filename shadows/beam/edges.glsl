@@ -33,11 +33,10 @@
 // the largest |corner x q|; it makes up for corners that are off by 16 e S as seen from the point.
 #ifndef SHADOWS_BEAM_EDGES_GLSL
 #define SHADOWS_BEAM_EDGES_GLSL
+#include "shadows/beam/points.glsl"
 
 const float kHuge = 3.0e38;
 const float kEdgeError = 2.0 * 16.0 / 16777216.0;
-
-float norm1(vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
 
 // u and v of a corner.
 vec2 across(vec3 r, vec2 tilt) { return kDirectional ? r.xy - tilt * r.z : r.xy / r.z; }

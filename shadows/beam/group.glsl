@@ -61,6 +61,11 @@ vec3 to_beam(vec3 v) {
     return permuted;
 }
 
+vec3 from_beam(vec3 v) {
+    v.z *= beam.mirror;
+    return beam.axis == 0 ? v.zxy : beam.axis == 1 ? v.yzx : v;
+}
+
 // Points whose distance to the light is below this are left to the per-point walk: 1 / z overflows.
 const float kTinyDistance = 1e-30;
 // An axis is good for all points of a group if none is further off it than this factor.

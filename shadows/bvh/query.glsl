@@ -1,6 +1,7 @@
 // What the kernels of the BVH shadow query share: the tree, and where segments begin.
 #include "taskpool/gpu/device.glsl"
 #include "structures/bvh/wide/wide_node.glsl"
+layout(constant_id = 1) const bool kDirectional = false;
 
 struct Structure {
     WideHeaderRef header;

@@ -20,8 +20,8 @@ layout(constant_id = 3) const uint kChunksPerGroup = 0xffffffffu;
 layout(constant_id = 4) const uint kBatchLimit = 0xffffffffu;  // batches of points per invocation
 layout(constant_id = 5) const uint kChunkEntries = 64;         // at most one per lane
 
-#include "shadows/beam/edges.glsl"
 #include "shadows/beam/points.glsl"
+#include "shadows/beam/edges.glsl"
 #include "shadows/izb/izb_shared.h"
 #include "shadows/occlusion.glsl"
 #include "structures/geometry/corner_triangles.glsl"

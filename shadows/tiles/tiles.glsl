@@ -1,6 +1,7 @@
 // What queries that answer tile by tile share: parameters, tiles, points, answers.
 //
 //     #include "taskpool/gpu/device.glsl"
+//     layout(constant_id = 1) const bool kDirectional = false;
 //     struct Structure { ... };                  // addresses of what is walked, at most 56 bytes
 //     #include "shadows/tiles/tiles.glsl"
 //     vec3 asked_from(vec3 p) { return p; }      // hook: where the segment of point p begins
@@ -13,7 +14,6 @@
 #include "shadows/beam/points.glsl"
 layout(local_size_x_id = 0) in;
 
-layout(constant_id = 1) const bool kDirectional = false;
 layout(constant_id = 2) const bool kStatistics = false;
 layout(constant_id = 3) const uint kStackLimit = 64u;     // entries
 layout(constant_id = 4) const uint kStepLimit = 1000000u; // loop iterations of one traversal, or,
