@@ -1,5 +1,5 @@
-// The points of a tile and its bits, and reductions over a subgroup: part of beam.glsl, and of every
-// kernel that works on tiles.
+// The points of a tile and its bits, and reductions over a subgroup: part of beam.glsl, and of
+// every kernel that works on tiles.
 // A lane holds kSlots points; bit k of a mask stands for its slot k. Arrays are only indexed by
 // unrolled loops, so that they stay in registers.
 #ifndef SHADOWS_BEAM_POINTS_GLSL
@@ -19,6 +19,18 @@ uint tile_point(uint tile, uint k) {
     return tile * kTilePoints + k * kLanes + lane();
 }
 bool has_bit(uint bits, uint k) { return (bits >> k & 1u) != 0; }
+
+// Takes the lowest lane out of a vote that is not empty.
+uint take_lane(inout uvec4 votes) {
+    if (kLanes <= 32 || votes.x != 0) {
+        const uint lane = findLSB(votes.x);
+        votes.x &= votes.x - 1u;
+        return lane;
+    }
+    const uint lane = findLSB(votes.y);
+    votes.y &= votes.y - 1u;
+    return 32u + lane;
+}
 
 // Loops over hops of 1, 2, 4 ... run over the logarithm: Mesa before 23 unrolls no loop whose variable is
 // multiplied or divided, and nobody would count its iterations.
