@@ -37,6 +37,7 @@ void add(structures::Samples& samples, const structures::Samples& more) {
 /// Build and query once; the samples of both and their sum.
 structures::Samples answer(Contestant& contestant, const SceneInput& input,
                            const shadows::Points& points) {
+    contestant.method->expect(points);
     structures::Samples samples = contestant.method->build(input.light);
     const structures::Samples asked = contestant.method->query(points, contestant.visible);
     if (contestant.visible.words.size() != points.count() / 32)
