@@ -101,6 +101,27 @@ TEST_F(MetricInsertion, IsValidInAnyOrderAndPool) {
         }
 }
 
+TEST_F(MetricInsertion, IsValidAtAnyScaleAndPlace) {
+    for (const auto& [scale, shift] : {std::pair{1e-4f, 0.0f},
+                                       {1e4f, 0.0f},
+                                       {1e-30f, 0.0f},
+                                       {1e15f, 0.0f},
+                                       {1.0f, 0x1p20f},
+                                       {100.0f, -0x1p20f}}) {
+        SCOPED_TRACE(testing::Message() << "times " << scale << ", moved by " << shift);
+        Clustering clustering = tests::random_clusters(1000, true, 61);
+        for (Cluster& cluster : clustering.clusters) {
+            cluster.a = cluster.a * scale + shift;
+            cluster.b = cluster.b * scale + shift;
+            cluster.radius *= scale;
+        }
+        for (Light light : {kOutside, kInside, kSun}) {
+            if (light.type == Light::Type::point) light.vector = light.vector * scale + shift;
+            expect_valid(clustering, build(clustering, light));
+        }
+    }
+}
+
 TEST_F(MetricInsertion, GivesAnotherTreeForAnotherSeed) {
     const Clustering clustering = tests::random_clusters(1000, false, 5);
     std::set<std::uint32_t> roots;
