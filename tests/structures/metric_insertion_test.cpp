@@ -1,11 +1,13 @@
 // Metric trees built by insertion: valid whatever the order, the pool, the light and the clusters.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <numbers>
 #include <set>
 
 #include "structures/metric_tree/build.hpp"
 #include "structures/metric_tree/reference.hpp"
+#include "structures/structure.hpp"
 #include "tests/structures/clusters.hpp"
 #include "tests/structures/meshes.hpp"
 #include "tests/support/gpu_fixture.hpp"
@@ -97,6 +99,27 @@ TEST_F(MetricInsertion, IsValidInAnyOrderAndPool) {
             config.pool.iteration_budget = 40'000;
             expect_found(config);
         }
+}
+
+TEST_F(MetricInsertion, IsValidAtAnyScaleAndPlace) {
+    for (const auto& [scale, shift] : {std::pair{1e-4f, 0.0f},
+                                       {1e4f, 0.0f},
+                                       {1e-30f, 0.0f},
+                                       {1e15f, 0.0f},
+                                       {1.0f, 0x1p20f},
+                                       {100.0f, -0x1p20f}}) {
+        SCOPED_TRACE(testing::Message() << "times " << scale << ", moved by " << shift);
+        Clustering clustering = tests::random_clusters(1000, true, 61);
+        for (Cluster& cluster : clustering.clusters) {
+            cluster.a = cluster.a * scale + shift;
+            cluster.b = cluster.b * scale + shift;
+            cluster.radius *= scale;
+        }
+        for (Light light : {kOutside, kInside, kSun}) {
+            if (light.type == Light::Type::point) light.vector = light.vector * scale + shift;
+            expect_valid(clustering, build(clustering, light));
+        }
+    }
 }
 
 TEST_F(MetricInsertion, GivesAnotherTreeForAnotherSeed) {
@@ -200,6 +223,85 @@ TEST_F(MetricInsertion, LoadsTreesBuiltElsewhere) {
     EXPECT_THROW(
         target.load(build_reference(tests::random_clusters(3, true, 1), mesh.bounds(), kSun)),
         std::invalid_argument);
+}
+
+/// Elements that a query at `point` meets on its way down the tree.
+std::set<std::uint32_t> met_by_walk(const Tree& tree, const glm::dvec3& point) {
+    const LightFrame& frame = tree.header.frame;
+    const double depth = depth_of(frame, point);
+    std::set<std::uint32_t> met;
+    std::vector<std::uint32_t> links{tree.header.root};
+    while (!links.empty()) {
+        const std::uint32_t link = links.back();
+        links.pop_back();
+        if (link == 0) continue;
+        const MetricNode& node = tree.nodes[link - 1];
+        if (depth < node.min_depth) continue;
+        const double d = distance_to(frame.directional != 0, seen(frame, point), element_of(node));
+        if (d <= node.radius) met.insert(link - 1);
+        if (d <= node.near_max) links.push_back(node.near);
+        if (d >= node.far_min) links.push_back(node.far);
+        if (d >= node.over_min && d <= node.over_max) links.push_back(node.over);
+    }
+    return met;
+}
+
+TEST_F(MetricInsertion, QueriesMeetWhatBruteForceMeets) {
+    const Clustering clustering = tests::random_clusters(2000, true, 51);
+    for (const Light& light : {kOutside, kInside, kSun}) {
+        const Tree tree = build(clustering, light);
+        const LightFrame& frame = tree.header.frame;
+        Random random(52);
+        std::size_t met_count = 0;
+        for (int i = 0; i < 200; ++i) {
+            const glm::dvec3 point = random.in_box(1.5);
+            const std::set<std::uint32_t> met = met_by_walk(tree, point);
+            for (std::uint32_t id = 0; id < clustering.clusters.size(); ++id) {
+                Element element;
+                double min_depth;
+                if (make_element(frame, clustering.clusters[id], false, element, min_depth) !=
+                    Role::element)
+                    continue;
+                const Element stored = element_of(tree.nodes[id]);
+                const bool within = distance_to(frame.directional != 0, seen(frame, point),
+                                                stored) <= stored.radius;
+                const bool before = min_depth <= depth_of(frame, point);
+                ASSERT_FALSE(within && before && !met.contains(id))
+                    << "cluster " << id << " is not met at point " << i;
+                ASSERT_FALSE(!within && met.contains(id));
+                met_count += within && before ? 1 : 0;
+            }
+        }
+        EXPECT_GT(met_count, 100u);
+    }
+}
+
+TEST_F(MetricInsertion, IsARowWithItsCpuBuilders) {
+    const auto row =
+        std::ranges::find(structures::registry(), "metric_tree", &structures::StructureRow::name);
+    ASSERT_NE(row, structures::registry().end());
+    const tests::TriangleMesh mesh = tests::sphere(40, 60, {1, -2, 3}, 5);
+    for (const char* kind : {"insertion", "cpu_median", "cpu_cost"})
+        for (const bool directional : {false, true})
+            for (const double height : {0.5, 2.0}) {
+                SCOPED_TRACE(testing::Message() << kind << ", light at " << height);
+                const auto settings =
+                    structures::Settings::resolve(row->parameters(), {{"build", std::string(kind)},
+                                                                      {"directional", directional},
+                                                                      {"cull_facing", height > 1},
+                                                                      {"light_x", 0.4},
+                                                                      {"light_y", height}});
+                const auto builder = row->create(tests::device(), settings);
+                std::set<std::uint64_t> fingerprints;
+                for (int i = 0; i < 2; ++i) {
+                    builder->prepare(mesh);
+                    pool::run(tests::device(), builder->job());
+                    EXPECT_THAT(builder->validate(), testing::IsEmpty());
+                    fingerprints.insert(builder->fingerprint());
+                }
+                EXPECT_EQ(fingerprints.size(), 1u);
+                EXPECT_EQ(fingerprints.contains(0), std::string(kind) == "insertion");
+            }
 }
 
 TEST_F(MetricInsertion, TakesTheMemoryItSays) {
