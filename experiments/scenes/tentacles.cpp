@@ -31,8 +31,6 @@ std::span<const Parameter> parameters() {
     return list;
 }
 
-constexpr double kFloor = 5;  // half its side
-
 /// Leans outward from its bundle; a wave of growing swing runs up it.
 std::vector<Ring> tentacle(Random& random, glm::dvec2 root, glm::dvec2 lean, double radius,
                            std::size_t segments, double wave, double phase) {
@@ -72,13 +70,16 @@ GeneratedScene generate(const Settings& settings) {
     const std::size_t count = (triangles - 2 + each - 1) / each;
     scene.mesh.triangles.reserve(count * each + 2);
     scene.mesh.positions.reserve(count * (sides * segments + 1) + 4);
-    // The more tentacles, the thinner, so that the floor stays about equally full.
-    const double radius = std::clamp(1.6 / std::sqrt(double(count)), 0.004, 0.11);
+    // The more tentacles, the thinner they and the larger the floor, so that light still finds its
+    // way between them: their number times their radius grows like the floor.
+    const double root = std::sqrt(std::sqrt(double(count)));
+    const double radius = std::min(0.1, 0.3 / root),
+                 floor = std::max(2.5, 0.7 * root * std::sqrt(root));
     const double spread = std::min(0.8, 1.5 * radius * std::sqrt(double(bundle)));
     glm::dvec2 middle(0);
     for (std::size_t i = 0; i < count; ++i) {
         if (i % bundle == 0) {
-            const double edge = 0.75 * kFloor;
+            const double edge = floor - 1.3;
             middle = {random.uniform(-edge, edge), random.uniform(-edge, edge)};
         }
         const glm::dvec2 away = std::sqrt(random.uniform()) * unit_circle(random.uniform());
@@ -87,10 +88,13 @@ GeneratedScene generate(const Settings& settings) {
                           radius * random.uniform(0.7, 1.3), segments, wave, phase),
                  sides);
     }
-    add_ground(scene.mesh, kFloor);
+    add_ground(scene.mesh, floor);
 
-    scene.camera = {{3.2f, 3.6f, 6.8f}, {0.2f, 0.8f, 0.3f}, {0, 1, 0}, 50};
-    scene.light = {structures::geometry::Light::Type::point, {-4.5f, 7, 3.5f}};
+    const auto size = static_cast<float>(floor);
+    scene.camera = {
+        {0.62f * size, 1.8f + 0.36f * size, 1.3f * size}, {0, 0.8f, 0.08f * size}, {0, 1, 0}, 50};
+    scene.light = {structures::geometry::Light::Type::point,
+                   {-0.9f * size, 3 + 0.8f * size, 0.7f * size}};
     return scene;
 }
 
