@@ -4,7 +4,7 @@
 //     layout(...) ...                              // the structure's parameters
 //     vec3 beam_point(uint point) { ... }          // hooks: world position, primitive id,
 //     uint beam_primitive(uint point) { ... }
-//     void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint primitive) {...}
+//     CornerTriangle beam_triangle(uint index) { ... }
 //     void beam_walk() { ... beam_meets_box(...); beam_test_triangles(...); }
 //     void main() { beam_light = ...; TileAnswer answer = answer_tile(tile, origin, size); ... }
 //
@@ -19,6 +19,7 @@
 // device.glsl first.
 #ifndef SHADOWS_BEAM_BEAM_GLSL
 #define SHADOWS_BEAM_BEAM_GLSL
+#include "structures/geometry/corner_triangles.glsl"
 #include "shadows/occlusion.glsl"
 
 vec3 beam_light;  // position, or direction towards a directional light
@@ -30,7 +31,7 @@ vec3 beam_light;  // position, or direction towards a directional light
 // Hooks.
 vec3 beam_point(uint point);
 uint beam_primitive(uint point);
-void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint primitive);
+CornerTriangle beam_triangle(uint index);
 // Walks the structure with `beam`; stops early when group_finished() or out of steps.
 void beam_walk();
 
@@ -82,9 +83,7 @@ bool beam_take_triangles(uint count) {
 
 // Exact test of one triangle against the lane's `slots`, not 0.
 void test_exactly(uint index, uint slots) {
-    vec3 a, b, c;
-    uint primitive;
-    beam_triangle(index, a, b, c, primitive);
+    const CornerTriangle t = beam_triangle(index);
     while (true) {
         const uint k = findLSB(slots);
         slots &= slots - 1u;
@@ -94,7 +93,7 @@ void test_exactly(uint index, uint slots) {
             segment = directional_segment(p, beam_light);
         else
             segment = point_segment(p, beam_light);
-        const int hit = occludes_quickly(segment, a, b, c);
+        const int hit = occludes_quickly(segment, t.a, t.b, t.c);
         if (hit == 1) beam_occluded |= 1u << k;
         if (hit == kUnsure) beam_unsure |= 1u << k;
         ++beam_exact_tests;
@@ -107,12 +106,10 @@ void beam_test_triangles(uint index, bool used) {
     Candidate mine;
     uint verdict = kMiss;
     if (used) {
-        vec3 a, b, c;
-        uint primitive;
-        beam_triangle(index, a, b, c, primitive);
-        verdict = classify(a, b, c, beam_live, mine);
-        const bool receives = (primitive_bit(primitive) & beam_primitives) != 0;
-        mine.receiver = receives ? primitive : kNoPrimitive;
+        const CornerTriangle t = beam_triangle(index);
+        verdict = classify(t.a, t.b, t.c, beam_live, mine);
+        const bool receives = (primitive_bit(t.primitive) & beam_primitives) != 0;
+        mine.receiver = receives ? t.primitive : kNoPrimitive;
         if (verdict == kCovers && receives) verdict = kMeets;
     }
     if (subgroupAny(verdict == kCovers)) {

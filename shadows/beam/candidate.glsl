@@ -33,8 +33,6 @@ const uint kMiss = 0u, kMeets = 1u, kCovers = 2u;
 const float kEdgeError = 2.0 * 16.0 / 16777216.0;
 const float kPlaneError = 2.0 * 16.0 / 16777216.0;
 
-float norm1(vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
-
 vec3 from_world(vec3 p) { return to_beam((p - beam_origin) * beam_scale); }
 
 // Largest distance across of a corner from the beam's directions; see X above.

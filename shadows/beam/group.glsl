@@ -61,6 +61,11 @@ vec3 to_beam(vec3 v) {
     return permuted;
 }
 
+vec3 from_beam(vec3 v) {
+    v.z *= beam.mirror;
+    return beam.axis == 0 ? v.zxy : beam.axis == 1 ? v.yzx : v;
+}
+
 const float kHuge = 3.0e38;
 // Points whose distance to the light is below this are left to the per-point walk: 1 / z overflows.
 const float kTinyDistance = 1e-30;

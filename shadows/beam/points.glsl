@@ -12,6 +12,8 @@ const uint kNoPrimitive = 0xffffffffu;
 layout(constant_id = 9) const uint kSlots = 32;
 const uint kLanes = kTilePoints / kSlots;
 
+float norm1(vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
+
 uint lane() { return gl_SubgroupInvocationID; }
 uint tile_point(uint tile, uint k) {
     return tile * kTilePoints + k * kLanes + lane();

@@ -73,8 +73,6 @@ float from_ordered(uint word) {
     return uintBitsToFloat(word ^ ((word & 0x80000000u) != 0 ? 0x80000000u : 0xffffffffu));
 }
 
-float norm1(vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
-
 // From the world's axes to a face's.
 vec3 to_face(vec3 v, uint face) {
     const vec3 permuted = axis_last(v, int(face >> 1));

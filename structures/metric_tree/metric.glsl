@@ -1,5 +1,6 @@
 // Distances between what the light sees: on the sphere of directions around a point light, or in the
-// plane across a directional one. The includer defines kDirectional; metric.hpp is the same in C++.
+// plane across a directional one. The includer defines kDirectional, and kCapsules: without, all
+// elements are balls. metric.hpp is the same in C++.
 //
 // Every distance returned is off by less than kMetricError / 4 = 2^-20, for arcs of at most 90
 // degrees and coordinates in the plane of at most 4:
@@ -43,7 +44,7 @@ float distance_between(vec3 p, vec3 q) {
 float distance_to(vec3 p, vec3 a, vec3 b) {
     const vec3 e = b - a;
     const float ee = dot(e, e);
-    if (!(ee > 0)) return distance_between(p, a);
+    if (!kCapsules || !(ee > 0)) return distance_between(p, a);
     float t;
     if (kDirectional) {
         t = clamp(dot(p - a, e) / ee, 0.0, 1.0);
@@ -69,7 +70,7 @@ vec3 middle_of(Element element) { return 0.5 * (element.a + element.b); }
 vec2 reach_of(Element pivot, Element element, out float middle) {
     middle = distance_to(middle_of(element), pivot.a, pivot.b);
     vec2 reach = vec2(middle);
-    if (element.a != element.b) {
+    if (kCapsules && element.a != element.b) {
         const float half_length = 0.5 * distance_between(element.a, element.b);
         const float at_a = distance_to(element.a, pivot.a, pivot.b);
         const float at_b = distance_to(element.b, pivot.a, pivot.b);

@@ -45,6 +45,8 @@ Role make_element(const LightFrame& frame, const Cluster& cluster, bool cull_fac
                   Element& element, double& min_depth);
 /// A node without subtrees.
 MetricNode make_node(const Element& element, double min_depth);
+/// The node of a special cluster, in front of the one that `next` links to (0: none).
+MetricNode special_node(std::uint32_t next);
 Element element_of(const MetricNode& node);
 
 }  // namespace structures::metric_tree

@@ -16,6 +16,9 @@
 //   into the near subtree         if D <= near_max,
 //   into the far subtree          if D >= far_min,
 //   into the overlapping subtree  if over_min <= D <= over_max.
+// Special clusters concern every query. Their nodes are not in the tree but in a list, which begins at
+// header.special and goes on along `over`; they have an infinite radius and bounds that hold always.
+//
 // Every bound includes the radii of its elements and the errors of all distances, the query's own among
 // them.
 #ifndef STRUCTURES_METRIC_TREE_METRIC_TREE_SHARED_H
@@ -39,6 +42,9 @@ GROVE_CONSTANT uint kLinkMask = 0x07ffffffu;
 GROVE_CONSTANT float kMetricError = 3.814697265625e-6f;
 /// Largest angular radius of an element, 60 degrees; clusters that look wider are special.
 GROVE_CONSTANT float kWidestElement = 1.0471975512f;
+/// Nodes on a path of a tree built by insertion, at most; elements that would come below are in a list
+/// along the last node's overlapping link, whose nodes' bounds hold everything.
+GROVE_CONSTANT uint kMaxDepth = 256;
 
 struct Cluster {
     vec3 a;             // world space
@@ -85,12 +91,12 @@ struct MetricHeader {
     LightFrame frame;
     uint root;           // link; 0: no tree
     uint cluster_count;
-    uint special_count;  // clusters that are no elements: around the light or too wide, see `special`
+    uint special_count;  // clusters that are no elements: around the light or too wide
     uint inserted;       // elements in the tree
     uint culled_facing;  // clusters left out
     uint bucketed;       // elements in lists at the end of chains
-    uint depth_max;      // nodes on the longest path
-    uint reserved;
+    uint depth_max;      // nodes on the longest path, those lists not counted
+    uint special;        // link to the first special cluster's node
 };
 
 #ifdef __cplusplus

@@ -10,6 +10,7 @@
 #include "tests/structures/meshes.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/occlusion.hpp"
+#include "tests/support/points.hpp"
 
 namespace {
 
@@ -17,7 +18,8 @@ using namespace shadows;
 using shadows::bvh::Query;
 using shadows::bvh::QueryConfig;
 using shadows::bvh::QueryKind;
-using shadows::bvh::QueryStatus;
+using shadows::tiles::Limits;
+using shadows::tiles::QueryStatus;
 using structures::geometry::Light;
 using structures::geometry::TriangleMesh;
 using tests::add_box;
@@ -37,27 +39,19 @@ Scene make_scene(std::uint32_t width, std::uint32_t height) {
     Scene scene;
     scene.width = width;
     scene.height = height;
-    const std::size_t count = ((width + 15) / 16) * ((height + 15) / 16) * kTilePoints;
-    scene.points.x.assign(count, 0);
-    scene.points.y = scene.points.z = scene.points.x;
-    scene.points.primitive.assign(count, kNoPrimitive);
-    scene.points.normal.assign(count, glm::vec3(0, 0, 1));
+    scene.points = tests::no_points(width, height);
     return scene;
 }
 
 void set_point(Scene& scene, std::uint32_t x, std::uint32_t y, glm::vec3 p,
-               std::uint32_t primitive = 0xfffffffeu) {
-    const std::uint32_t i = point_index(x, y, scene.width);
-    scene.points.x[i] = p.x;
-    scene.points.y[i] = p.y;
-    scene.points.z[i] = p.z;
-    scene.points.primitive[i] = primitive;
+               std::uint32_t primitive = kNoReceiver) {
+    tests::set_point(scene.points, point_index(x, y, scene.width), p, primitive);
 }
 
 struct Result {
     Visibility visible;
     QueryStatus status;
-    std::vector<bvh::PointCost> costs;
+    std::vector<shadows::tiles::PointCost> costs;
 };
 
 Result run(const Scene& scene, const QueryConfig& config) {
@@ -88,17 +82,16 @@ std::vector<bool> expected_lit(const Scene& scene) {
     std::vector<bool> lit(scene.points.x.size(), true);
     for (std::size_t i = 0; i < lit.size(); ++i)
         if (scene.points.primitive[i] != kNoPrimitive)
-            lit[i] = !tests::occluded({scene.points.x[i], scene.points.y[i], scene.points.z[i]},
-                                      scene.points.primitive[i], scene.light, scene.mesh);
+            lit[i] = !tests::occluded(tests::position(scene.points, i), scene.points.primitive[i],
+                                      scene.light, scene.mesh);
     return lit;
 }
 
 /// All kinds equal the exact test.
-void check(const Scene& scene, const QueryConfig& limits = {}) {
+void check(const Scene& scene, const Limits& limits = {}) {
     const std::vector<bool> expected = expected_lit(scene);
     for (QueryKind kind : kKinds) {
-        QueryConfig config = limits;
-        config.kind = kind;
+        const QueryConfig config{.kind = kind, .limits = limits};
         const Result result = run(scene, config);
         std::size_t wrong = 0;
         for (std::size_t i = 0; i < expected.size(); ++i)
@@ -287,19 +280,18 @@ TEST_F(BvhShadow, CoplanarReceiversAndOwnTriangle) {
 
 TEST_F(BvhShadow, TinyLimitsLoseNothing) {
     const Scene scene = soup(29, 3000, 0.1f, 64, 48);
-    for (const QueryConfig& limits :
-         {QueryConfig{.stack = 1}, QueryConfig{.list = 64}, QueryConfig{.steps = 5},
-          QueryConfig{.density = 0}, QueryConfig{.stack = 1, .density = 1000}})
+    for (const Limits& limits : {Limits{.stack = 1}, Limits{.scratch = 64}, Limits{.steps = 5},
+                                 Limits{.density = 0}, Limits{.stack = 1, .density = 1000}})
         check(scene, limits);
-    EXPECT_GT(run(scene, {.stack = 1}).status.stack_full, 0u);
-    EXPECT_GT(run(scene, {.steps = 5}).status.step_limit, 0u);
-    EXPECT_GT(run(scene, {.steps = 5}).status.deferred_points, 0u);
+    EXPECT_GT(run(scene, {.limits = {.stack = 1}}).status.stack_full, 0u);
+    EXPECT_GT(run(scene, {.limits = {.steps = 5}}).status.step_limit, 0u);
+    EXPECT_GT(run(scene, {.limits = {.steps = 5}}).status.deferred_points, 0u);
     // A beam that meets too many triangles gives way to packets, and to packets alone.
-    EXPECT_GT(run(scene, {.density = 0}).status.packet_tiles, 0u);
-    EXPECT_EQ(run(scene, {.density = 0}).status.deferred_points, 0u);
-    EXPECT_EQ(run(scene, {.density = 100'000}).status.packet_tiles, 0u);
+    EXPECT_GT(run(scene, {.limits = {.density = 0}}).status.packet_tiles, 0u);
+    EXPECT_EQ(run(scene, {.limits = {.density = 0}}).status.deferred_points, 0u);
+    EXPECT_EQ(run(scene, {.limits = {.density = 100'000}}).status.packet_tiles, 0u);
     // The per-point walk has nobody behind it: it must say that it failed.
-    EXPECT_GT(run(scene, {.kind = QueryKind::lane, .point_steps = 2}).status.incomplete, 0u);
+    EXPECT_GT(run(scene, {.kind = QueryKind::lane, .limits = {.point_steps = 2}}).status.incomplete, 0u);
 }
 
 TEST_F(BvhShadow, ManyEqualTriangles) {
@@ -324,12 +316,12 @@ TEST_F(BvhShadow, StatisticsCountWork) {
     const Scene scene = soup(37, 500, 0.2f, 48, 48);
     for (QueryKind kind : kKinds) {
         const Result plain = run(scene, {.kind = kind});
-        const Result counted = run(scene, {.kind = kind, .statistics = true});
+        const Result counted = run(scene, {.kind = kind, .limits = {.statistics = true}});
         EXPECT_EQ(plain.visible.words, counted.visible.words);
         EXPECT_TRUE(plain.costs.empty());
         ASSERT_EQ(counted.costs.size(), scene.points.x.size());
         std::uint64_t nodes = 0;
-        for (const bvh::PointCost& cost : counted.costs) nodes += cost.nodes;
+        for (const shadows::tiles::PointCost& cost : counted.costs) nodes += cost.nodes;
         EXPECT_GT(nodes, 0u);
     }
 }

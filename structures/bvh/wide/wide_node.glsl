@@ -3,15 +3,13 @@
 #define STRUCTURES_BVH_WIDE_WIDE_NODE_GLSL
 #include "taskpool/gpu/shared_types.h"
 #include "structures/bvh/wide/wide_shared.h"
+#include "structures/geometry/corner_triangles.glsl"
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer WideChildren {
     uvec4 at[];
 };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer WideHeaderRef {
     WideHeader header;
-};
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer WideTriangles {
-    WideTriangle at[];
 };
 
 bool is_leaf(uint link) { return (link & kLeafBit) != 0; }

@@ -1,13 +1,13 @@
-// What C++ and the kernels of the BVH shadow query share.
-#ifndef SHADOWS_BVH_QUERY_SHARED_H
-#define SHADOWS_BVH_QUERY_SHARED_H
+// What C++ and the kernels of queries that answer tile by tile share.
+#ifndef SHADOWS_TILES_QUERY_SHARED_H
+#define SHADOWS_TILES_QUERY_SHARED_H
 
 #ifdef __cplusplus
 #include <cstddef>
 
 #include "taskpool/gpu/shared_types.h"
 
-namespace shadows::bvh {
+namespace shadows::tiles {
 using namespace taskpool::gpu::shared_types;
 #define GROVE_CONSTANT inline constexpr
 #else
@@ -33,12 +33,6 @@ struct QueryStatus {
 };
 GROVE_CONSTANT uint kDeferredOffset = 28u;
 
-// Leaf tests (leaf_variants.glsl).
-GROVE_CONSTANT uint kLeafExact = 0u;
-GROVE_CONSTANT uint kLeafWatertight = 1u;
-GROVE_CONSTANT uint kLeafMoellerTrumbore = 2u;
-GROVE_CONSTANT uint kLeafDouble = 3u;
-
 // With statistics, per point.
 struct PointCost {
     uint nodes;
@@ -49,7 +43,7 @@ struct PointCost {
 static_assert(sizeof(QueryStatus) == 52);
 static_assert(offsetof(QueryStatus, deferred_groups_x) == kDeferredOffset);
 static_assert(sizeof(PointCost) == 8);
-}  // namespace shadows::bvh
+}  // namespace shadows::tiles
 #endif
 #undef GROVE_CONSTANT
 #endif

@@ -1,6 +1,5 @@
 // A traversal stack shared by a subgroup: in registers across it, entry i in lane i % size, so that
-// no memory is touched. An entry holds a node's children still to be visited (any_hit.glsl), so it
-// is no deeper than the tree.
+// no memory is touched.
 #ifndef SHADOWS_BVH_SUBGROUP_STACK_GLSL
 #define SHADOWS_BVH_SUBGROUP_STACK_GLSL
 

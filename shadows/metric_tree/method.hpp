@@ -1,0 +1,45 @@
+// The ternary metric tree as a shadow method (F. Deves et al. 2018): triangles clustered once, a tree
+// over the clusters built for each light, points walking it.
+#pragma once
+
+#include <optional>
+
+#include "shadows/method.hpp"
+#include "shadows/tiles/tile_query.hpp"
+#include "structures/metric_tree/settings.hpp"
+
+namespace shadows::metric_tree {
+
+class MetricTreeMethod final : public Method {
+  public:
+    MetricTreeMethod(taskpool::gpu::Device& device, const structures::Settings& settings);
+
+    void prepare(const structures::geometry::TriangleMesh& mesh) override;
+    /// build_ms (the tree for this light), cluster_ms (once, by prepare), memory_bytes, what became of
+    /// the clusters, and counters of the pool.
+    structures::Samples build(const structures::geometry::Light& light) override;
+    /// query_ms, incomplete, deferred and, with statistics, visited nodes and tested triangles.
+    structures::Samples query(const Points& points, Visibility& visible) override;
+    std::vector<float> heat() override { return query_->heat(); }
+    bool claims_exact() const override { return !build_.config().cull_facing; }
+
+  private:
+    double build_on_host(const structures::geometry::Light& light);
+
+    taskpool::gpu::Device& device_;
+    structures::metric_tree::ClusterConfig cluster_config_;
+    /// Absent: built on the device.
+    std::optional<structures::metric_tree::ReferenceConfig> reference_;
+    structures::metric_tree::MetricTreeBuild build_;
+    tiles::Limits limits_;
+    tiles::Shaders shaders_;
+    std::optional<tiles::TileQuery> query_;  ///< from prepare() on
+    taskpool::gpu::Timestamps times_;
+    structures::metric_tree::Clustering clustering_;
+    structures::geometry::Aabb bounds_;
+    std::size_t triangle_count_ = 0;
+    double cluster_ms_ = 0;
+    structures::geometry::Light light_;
+};
+
+}  // namespace shadows::metric_tree
