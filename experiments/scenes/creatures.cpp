@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "experiments/scenes/spline.hpp"
+
 namespace experiments::scenes {
 namespace {
 
@@ -127,25 +129,13 @@ double extent(const Limb& limb) {
 
 std::size_t least_rings(const Limb& limb) { return limb.size() + 1; }
 
-/// Catmull-Rom spline through the knots, its ends continued straight.
+/// Evenly spread over the spline's parameter.
 std::vector<Ring> rings_along(const Limb& limb, std::size_t count) {
-    const std::size_t stretches = limb.size() - 1;
-    const auto knot = [&](std::size_t i) {  // i counts from 1
-        if (i == 0) return 2.0 * limb[0] - limb[1];
-        if (i > limb.size()) return 2.0 * limb[stretches] - limb[stretches - 1];
-        return limb[i - 1];
-    };
     std::vector<Ring> rings(count);
     for (std::size_t r = 0; r < count; ++r) {
-        const double at = double(r) / double(count - 1) * double(stretches);
-        const std::size_t i = std::min(static_cast<std::size_t>(at), stretches - 1);
-        const double t = at - double(i);
-        const Knot a = knot(i), b = knot(i + 1), c = knot(i + 2), d = knot(i + 3);
-        const Knot linear = c - a, square = 2.0 * a - 5.0 * b + 4.0 * c - d,
-                   cube = 3.0 * (b - c) + d - a;
-        const Knot p = b + 0.5 * t * (linear + t * (square + t * cube));
-        const glm::dvec3 slope(linear + t * (2.0 * square + 3.0 * t * cube));
-        rings[r] = {glm::dvec3(p), glm::normalize(slope), std::max(p.w, 0.004)};
+        const double at = double(r) / double(count - 1) * double(limb.size() - 1);
+        const auto [p, slope] = on_spline<Knot>(limb, at);
+        rings[r] = {glm::dvec3(p), glm::normalize(glm::dvec3(slope)), std::max(p.w, 0.004)};
     }
     rings.front().radius = rings.back().radius = 0;
     return rings;
