@@ -94,9 +94,13 @@ void MetricTreeMethod::prepare(const TriangleMesh& mesh) {
     triangle_count_ = clustering_.order.size();
     build_.prepare(clustering_, mesh);
     // No code for capsules where there are none.
-    tiles::Shaders specialised = shaders_;
-    specialised.constants.emplace_back(24, build_.has_capsules());
-    query_.emplace(device_, limits_, std::move(specialised));
+    std::optional<tiles::TileQuery>& query = queries_[build_.has_capsules()];
+    if (!query) {
+        tiles::Shaders specialised = shaders_;
+        specialised.constants.emplace_back(24, build_.has_capsules());
+        query.emplace(device_, limits_, std::move(specialised));
+    }
+    query_ = &*query;
 }
 
 double MetricTreeMethod::build_on_host(const Light& light) {
@@ -121,8 +125,8 @@ Samples MetricTreeMethod::build(const Light& light) {
         {"special_clusters", double(header.special_count)},
         {"bucketed_clusters", double(header.bucketed)},
         {"depth_max", double(header.depth_max)},
-        {"memory_bytes",
-         double(build_.required_bytes(header.cluster_count, triangle_count_)), "bytes"}};
+        {"memory_bytes", double(build_.required_bytes(header.cluster_count, triangle_count_)),
+         "bytes"}};
     if (!reference_) {
         const taskpool::pool::PoolStatus& status = build_.status();
         samples.push_back({"tasks", double(status.state.spawned) + 1});

@@ -1,7 +1,8 @@
-// The ternary metric tree as a shadow method (F. Deves et al. 2018): triangles clustered once, a tree
-// over the clusters built for each light, points walking it.
+// The ternary metric tree as a shadow method (F. Deves et al. 2018): triangles clustered once, a
+// tree over the clusters built for each light, points walking it.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "shadows/method.hpp"
@@ -15,8 +16,8 @@ class MetricTreeMethod final : public Method {
     MetricTreeMethod(taskpool::gpu::Device& device, const structures::Settings& settings);
 
     void prepare(const structures::geometry::TriangleMesh& mesh) override;
-    /// build_ms (the tree for this light), cluster_ms (once, by prepare), memory_bytes, what became of
-    /// the clusters, and counters of the pool.
+    /// build_ms (the tree for this light), cluster_ms (once, by prepare), memory_bytes, what became
+    /// of the clusters, and counters of the pool.
     structures::Samples build(const structures::geometry::Light& light) override;
     /// query_ms, incomplete, deferred and, with statistics, visited nodes and tested triangles.
     structures::Samples query(const Points& points, Visibility& visible) override;
@@ -33,7 +34,9 @@ class MetricTreeMethod final : public Method {
     structures::metric_tree::MetricTreeBuild build_;
     tiles::Limits limits_;
     tiles::Shaders shaders_;
-    std::optional<tiles::TileQuery> query_;  ///< from prepare() on
+    std::array<std::optional<tiles::TileQuery>, 2> queries_;  ///< without and with capsules; kept,
+                                                              ///< as kernels take long to compile
+    tiles::TileQuery* query_ = nullptr;                       ///< the one for the clusters prepared
     taskpool::gpu::Timestamps times_;
     structures::metric_tree::Clustering clustering_;
     structures::geometry::Aabb bounds_;
