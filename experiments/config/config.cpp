@@ -95,7 +95,10 @@ nlohmann::json scene_json(const Scene& scene) {
     if (!scene.view.empty()) json["view"] = scene.view;
     if (scene.camera) json["camera"] = to_json(*scene.camera);
     if (scene.light) json["light"] = to_json(*scene.light);
-    if (scene.path) json["path"] = to_json(*scene.path);
+    if (scene.path) {
+        json["path"] = to_json(*scene.path);
+        json["path"]["pictures"] = scene.all_pictures;
+    }
     return json;
 }
 

@@ -31,7 +31,10 @@ struct Scene {
     std::filesystem::path views{};       ///< file of named views, or empty
     std::string view{};                  ///< the view of that file
     std::optional<scenes::Path> path{};  ///< kind "shadows": goes before camera, light and view
+    bool all_pictures = false;           ///< of every frame, not the first alone
     std::uint32_t width = 1280, height = 720;
+
+    int frames() const { return path ? path->frames : 1; }
 };
 
 struct Method {

@@ -65,10 +65,12 @@ scenes::Keyframe read_key(const Node& node) {
 
 }  // namespace
 
-scenes::Path read_path(const Node& node) {
+Animation read_path(const Node& node) {
     Table table(node, "'path'");
-    scenes::Path path;
+    Animation animation;
+    scenes::Path& path = animation.path;
     path.frames = int(table.required("frames", table.integer("frames", 1, kMaxFrames)));
+    animation.all_pictures = table.boolean("pictures").value_or(false);
     const Node* keys = table.find("keys");
     if (!keys) fail(node, "'path' lacks the key 'keys'");
     const Node list =
@@ -76,7 +78,7 @@ scenes::Path read_path(const Node& node) {
     for (const Node& key : list.items) path.keys.push_back(read_key(key));
     table.finish();
     if (const std::string fault = path.fault(); !fault.empty()) fail(list, "'path': " + fault);
-    return path;
+    return animation;
 }
 
 nlohmann::json to_json(const scenes::Path& path) {

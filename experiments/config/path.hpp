@@ -8,8 +8,13 @@
 
 namespace experiments::config {
 
+struct Animation {
+    scenes::Path path;
+    bool all_pictures = false;
+};
+
 /// Throws ConfigError naming the place of what is wrong, a key of the file included.
-scenes::Path read_path(const Node& node);
+Animation read_path(const Node& node);
 nlohmann::json to_json(const scenes::Path& path);
 
 }  // namespace experiments::config

@@ -88,7 +88,9 @@ Scene read_scene(const Combination& combination, const Catalogue& catalogue, std
     scene.view = table.text("view").value_or("");
     read_resolution(table, scene);
     if (const Node* path = table.find("path")) {
-        scene.path = read_path(*path);
+        const Animation animation = read_path(*path);
+        scene.path = animation.path;
+        scene.all_pictures = animation.all_pictures;
         const scenes::Keyframe& key = scene.path->keys[0];
         if ((key.camera && scene.camera) || (key.light && scene.light))
             fail(*path, fmt::format("'path' excludes '{0}': its keys have {0}s",
