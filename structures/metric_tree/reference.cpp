@@ -21,7 +21,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <random>
 
 #include "structures/metric_tree/metric.hpp"
@@ -87,8 +87,9 @@ double cost_of(const std::vector<Placed>& placed, double delta) {
 }
 
 double median_of(const std::vector<Placed>& placed) {
-    std::vector<double> middles;
-    for (const Placed& p : placed) middles.push_back(p.reach.middle);
+    std::vector<double> middles(placed.size());
+    std::transform(placed.begin(), placed.end(), middles.begin(),
+                   [](const Placed& p) { return p.reach.middle; });
     const auto half = middles.begin() + middles.size() / 2;
     std::nth_element(middles.begin(), half, middles.end());
     return *half;
@@ -139,7 +140,6 @@ class Builder {
 
     template <typename Emit>
     void link(const Range& range, const Emit& emit) {
-        reach_depth(range.depth);
         std::uint32_t* const ids = ids_.data() + range.begin;
         const std::size_t others = range.end - range.begin - 1;
         Random random(config_.seed + (std::uint64_t{range.begin} << 32 | range.end));
@@ -171,6 +171,7 @@ class Builder {
     template <typename Emit>
     void divide(const Range& range, std::vector<Placed>& placed, double delta, const Emit& emit) {
         std::uint32_t* const ids = ids_.data() + range.begin;
+        reach_depth(range.depth);
         MetricNode& node = begin_node(range);
         Bounds bounds;
         for (const Placed& p : placed) bounds.take(p.reach, part_of(p.reach, delta));
@@ -223,7 +224,6 @@ class Builder {
             }
         }
         listed_ += range.end - range.begin;
-        reach_depth(range.depth + (range.end - range.begin) - 1);
     }
 
     void reach_depth(std::uint32_t depth) {

@@ -5,6 +5,7 @@
 layout(local_size_x_id = 0) in;
 #include "structures/metric_tree/metric_tree_shared.h"
 layout(constant_id = 1) const bool kDirectional = false;
+const bool kCapsules = true;
 #include "structures/metric_tree/metric.glsl"
 
 struct Pair {
