@@ -129,7 +129,8 @@ MetricHeader MetricTreeBuild::header() const { return gpu::read<MetricHeader>(he
 Tree MetricTreeBuild::read_back() const {
     Tree tree{header(), gpu::read<MetricNode>(nodes_, cluster_count_), {}};
     tree.header.root &= kLinkMask;
-    for (std::uint32_t link = tree.header.special; link != 0 && tree.special.size() < tree.header.special_count;
+    for (std::uint32_t link = tree.header.special;
+         link != 0 && tree.special.size() < tree.header.special_count;
          link = tree.nodes[link - 1].over)
         tree.special.push_back(link - 1);
     for (MetricNode& node : tree.nodes)

@@ -28,6 +28,8 @@ vec3 place_across(LightFrame frame, vec3 p) {
     return vec3(dot(frame.right, p), dot(frame.up, p), 0);
 }
 
+float angle_between(vec3 p, vec3 q) { return arc_tangent(length(cross(p, q)), dot(p, q)); }
+
 /// Whether all normals of the cluster are less than 90 degrees from all ways that light takes to
 /// it; see metric.cpp.
 bool all_face_away(LightFrame frame, Cluster cluster, Element element) {
@@ -35,10 +37,10 @@ bool all_face_away(LightFrame frame, Cluster cluster, Element element) {
     if (!(cosine > 0)) return false;
     float light;
     if (kDirectional)
-        light = distance_between(cluster.axis, frame.forward);
+        light = angle_between(cluster.axis, frame.forward);
     else
-        light = max(distance_between(cluster.axis, element.a),
-                    distance_between(cluster.axis, element.b)) + element.radius;
+        light = element.radius + max(angle_between(cluster.axis, element.a),
+                                     angle_between(cluster.axis, element.b));
     const float cone = arc_tangent(sqrt(max(1 - cosine * cosine, 0.0)), cosine);
     // The root above is of a small difference: off by 2^-10 at most where it is 0.
     return light + cone < 0.5 * kPi - 1e-3;

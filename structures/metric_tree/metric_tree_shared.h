@@ -17,7 +17,7 @@
 //   into the far subtree          if D >= far_min,
 //   into the overlapping subtree  if over_min <= D <= over_max.
 // Special clusters concern every query. Their nodes are not in the tree but in a list, which begins at
-// header.special and goes on along `over`; they have an infinite radius and bounds that hold always.
+// header.special and goes on along `over`; they have an infinite radius, bounds that hold always, and no ancestor.
 //
 // Every bound includes the radii of its elements and the errors of all distances, the query's own among
 // them.

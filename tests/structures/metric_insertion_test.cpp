@@ -1,44 +1,55 @@
 // Metric trees built by insertion: valid whatever the order, the pool, the light and the clusters.
 #include <gmock/gmock.h>
 
+#include <numbers>
 #include <set>
 
 #include "structures/metric_tree/build.hpp"
-#include "structures/metric_tree/metric.hpp"
-#include "tests/structures/metric_scenes.hpp"
+#include "structures/metric_tree/reference.hpp"
+#include "tests/structures/clusters.hpp"
+#include "tests/structures/meshes.hpp"
 #include "tests/support/gpu_fixture.hpp"
 
-namespace structures::metric_tree {
 namespace {
 
+using namespace structures::metric_tree;
 using namespace taskpool;
-using geometry::Light;
-using tests::MetricScene;
-using tests::random_clusters;
+using tests::Clustering;
+using tests::Light;
+using tests::make_cluster;
+using tests::Random;
 
-constexpr Light kAbove{Light::Type::point, {0.5f, 2, 0.5f}};
-constexpr Light kInside{Light::Type::point, {0.4f, 0.5f, 0.6f}};
+constexpr Light kOutside{Light::Type::point, {0.3f, 4, 0.2f}};
+constexpr Light kInside{Light::Type::point, {0.1f, 0.2f, -0.1f}};
 constexpr Light kFar{Light::Type::point, {3000, 10'000, -2000}};
-constexpr Light kSun{Light::Type::directional, {0.3f, -1, 0.2f}};
+constexpr Light kSun{Light::Type::directional, {1, -3, 0.5f}};
+
+/// The build takes no more of it than its bounds.
+tests::TriangleMesh mesh_around(const Clustering& clustering) {
+    tests::TriangleMesh mesh;
+    const tests::Aabb box = tests::bounds_of(clustering);
+    if (!box.empty()) tests::add_triangle(mesh, box.lower, box.upper, box.center());
+    return mesh;
+}
 
 class MetricInsertion : public tests::GpuTest {
   protected:
-    static Tree build(const MetricScene& scene, const Light& light,
-                      const BuildConfig& config = {}) {
-        MetricTreeBuild build(tests::device(), config);
-        return run(build, scene, light);
-    }
-    static Tree run(MetricTreeBuild& build, const MetricScene& scene, const Light& light) {
-        build.prepare(scene.clustering, scene.mesh);
+    static Tree run(MetricTreeBuild& build, const Clustering& clustering, const Light& light) {
+        build.prepare(clustering, mesh_around(clustering));
         build.set_light(light);
         pool::run(tests::device(), build);
         return build.read_back();
     }
-    static void expect_valid(const MetricScene& scene, const Tree& tree) {
-        EXPECT_THAT(validate(scene.clustering, tree), testing::IsEmpty());
+    static Tree build(const Clustering& clustering, const Light& light,
+                      const BuildConfig& config = {}) {
+        MetricTreeBuild build(tests::device(), config);
+        return run(build, clustering, light);
+    }
+    static void expect_valid(const Clustering& clustering, const Tree& tree) {
+        EXPECT_THAT(validate(clustering, tree), testing::IsEmpty());
         const MetricHeader& header = tree.header;
         EXPECT_EQ(header.inserted + header.special_count + header.culled_facing,
-                  scene.clustering.clusters.size());
+                  clustering.clusters.size());
         EXPECT_LE(header.depth_max, kMaxDepth);
     }
 };
@@ -48,25 +59,152 @@ TEST_F(MetricInsertion, IsValidForAllSizesAndLights) {
     MetricTreeBuild build(tests::device(), {});
     for (const std::uint32_t count :
          std::set<std::uint32_t>{0, 1, 2, lanes - 1, lanes, lanes + 1, 1000})
-        for (const double capsules : {0.0, 0.3, 1.0})
-            for (const Light& light : {kAbove, kInside, kFar, kSun}) {
-                const std::uint32_t seed = 7 + count;
-                const MetricScene scene = random_clusters(count, seed, capsules);
-                SCOPED_TRACE(testing::Message()
-                             << count << " clusters, seed " << seed << ", " << capsules
-                             << " capsules, light at " << light.vector.x);
-                expect_valid(scene, run(build, scene, light));
+        for (const bool capsules : {false, true})
+            for (const Light& light : {kOutside, kInside, kFar, kSun}) {
+                SCOPED_TRACE(testing::Message() << count << " clusters, capsules " << capsules
+                                                << ", light at " << light.vector.x);
+                const Clustering clustering = tests::random_clusters(count, capsules, 7 + count);
+                expect_valid(clustering, run(build, clustering, light));
             }
 }
 
 TEST_F(MetricInsertion, IsValidForManyClusters) {
-    const MetricScene scene = random_clusters(100'000, 11, 0.2, 0.004f, 0.05f);
-    for (const Light& light : {kAbove, kInside, kSun}) {
-        const Tree tree = build(scene, light);
-        expect_valid(scene, tree);
+    const Clustering clustering = tests::random_clusters(100'000, true, 11);
+    for (const Light& light : {kOutside, kInside, kSun}) {
+        const Tree tree = build(clustering, light);
+        expect_valid(clustering, tree);
         EXPECT_EQ(tree.header.bucketed, 0u);
     }
 }
 
+TEST_F(MetricInsertion, IsValidInAnyOrderAndPool) {
+    const Clustering clustering = tests::random_clusters(3000, true, 5);
+    const auto expect_found = [&](const BuildConfig& config) {
+        for (const Light& light : {kInside, kSun})
+            expect_valid(clustering, build(clustering, light, config));
+    };
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        expect_found({.seed = seed * 0x9e3779b97f4a7c15});
+    }
+    for (const pool::Policy policy : {pool::Policy::scan, pool::Policy::bitmap})
+        for (const std::uint32_t workgroups : {1u, 3u, 16u}) {
+            SCOPED_TRACE(testing::Message() << workgroups << " workgroups");
+            BuildConfig config;
+            config.pool.policy = policy;
+            config.pool.subgroups = workgroups;
+            config.pool.slots = 64;
+            config.pool.iteration_budget = 40'000;
+            expect_found(config);
+        }
+}
+
+TEST_F(MetricInsertion, GivesAnotherTreeForAnotherSeed) {
+    const Clustering clustering = tests::random_clusters(1000, false, 5);
+    std::set<std::uint32_t> roots;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        BuildConfig config{.seed = seed};
+        config.pool.subgroups = 1;
+        roots.insert(build(clustering, kOutside, config).header.root);
+    }
+    EXPECT_GT(roots.size(), 1u);
+}
+
+TEST_F(MetricInsertion, BoundsPathsWhereAllOverlap) {
+    // Copies of one cluster; clusters in a row from the light; spokes that all cross.
+    Clustering copies, row, spokes;
+    for (int i = 0; i < 100'000; ++i)
+        copies.clusters.push_back(make_cluster({0, 0, 0}, {0, 0, 0}, 0.1));
+    for (int i = 0; i < 10'000; ++i) {
+        const glm::dvec3 end(0, 0, -5 - 0.05 * i);
+        row.clusters.push_back(
+            make_cluster(end, i % 2 == 0 ? end : end + glm::dvec3(0, 0, 0.04), 0.1));
+    }
+    for (int i = 0; i < 5000; ++i) {
+        const double turn = std::numbers::pi * i / 5000;
+        const glm::dvec3 end(std::cos(turn), 0, std::sin(turn));
+        spokes.clusters.push_back(make_cluster(-end, end, 0.01));
+    }
+    for (const Clustering* clustering : {&copies, &row, &spokes})
+        for (const Light& light : {kOutside, kSun, Light{Light::Type::point, {0, 0, 3}},
+                                   Light{Light::Type::directional, {0, 0, -1}}}) {
+            SCOPED_TRACE(testing::Message() << clustering->clusters.size() << " clusters, light at "
+                                            << light.vector.z);
+            expect_valid(*clustering, build(*clustering, light));
+        }
+    EXPECT_GT(build(copies, kOutside).header.bucketed, 90'000u);
+}
+
+TEST_F(MetricInsertion, ListsWhatIsAroundTheLight) {
+    const Light light{Light::Type::point, {1, 2, 3}};
+    const glm::dvec3 at(light.vector);
+    Clustering clustering = tests::random_clusters(500, true, 21);
+    const std::size_t others = clustering.clusters.size();
+    for (int i = 0; i < 20; ++i) {
+        clustering.clusters.push_back(make_cluster(at, at, 0.5));  // within a ball
+        clustering.clusters.push_back(make_cluster(at, at, 0));    // at a point
+        clustering.clusters.push_back(
+            make_cluster(at + glm::dvec3(1, 0, 0), at + glm::dvec3(1, 0, 0), 1));  // touching
+        clustering.clusters.push_back(
+            make_cluster(at, at + glm::dvec3(0, 3, 0), 0.1));  // at an end
+        clustering.clusters.push_back(
+            make_cluster(at - glm::dvec3(0, 0, 2), at + glm::dvec3(0, 0, 2), 0.2));  // on the axis
+        clustering.clusters.push_back(
+            make_cluster(at + glm::dvec3(-5, 1, 0), at + glm::dvec3(5, 1, 0), 0.01));  // passing
+    }
+    for (const std::uint32_t workgroups : {0u, 7u}) {
+        BuildConfig config;
+        config.pool.subgroups = workgroups;
+        const Tree tree = build(clustering, light, config);
+        expect_valid(clustering, tree);
+        std::set<std::uint32_t> special(tree.special.begin(), tree.special.end());
+        for (std::size_t i = others; i < clustering.clusters.size(); ++i)
+            EXPECT_TRUE(special.contains(std::uint32_t(i))) << "cluster " << i;
+    }
+}
+
+TEST_F(MetricInsertion, LeavesOutWhatFacesAway) {
+    Clustering clustering = tests::random_clusters(4000, true, 31);
+    Random random(31);
+    for (Cluster& cluster : clustering.clusters) {
+        cluster.axis = random.direction();
+        cluster.cone_cosine = static_cast<float>(random.uniform(0.2, 1));
+    }
+    for (const Light& light : {kOutside, kInside, kSun}) {
+        const Tree tree = build(clustering, light, {.cull_facing = true});
+        expect_valid(clustering, tree);
+        EXPECT_GT(tree.header.culled_facing, 400u);
+        EXPECT_EQ(build(clustering, light).header.culled_facing, 0u);
+    }
+}
+
+TEST_F(MetricInsertion, LoadsTreesBuiltElsewhere) {
+    Clustering clustering = tests::random_clusters(700, true, 41);
+    const tests::TriangleMesh mesh = mesh_around(clustering);
+    MetricTreeBuild target(tests::device(), {});
+    target.prepare(clustering, mesh);
+    for (const Light& light : {kOutside, kInside, kSun}) {
+        const Tree tree = build_reference(clustering, mesh.bounds(), light);
+        target.load(tree);
+        const Tree loaded = target.read_back();
+        expect_valid(clustering, loaded);
+        EXPECT_EQ(loaded.header.root, tree.header.root);
+        EXPECT_EQ(std::set(loaded.special.begin(), loaded.special.end()),
+                  std::set(tree.special.begin(), tree.special.end()));
+    }
+    clustering.clusters.pop_back();
+    target.prepare(clustering, mesh);
+    EXPECT_THROW(
+        target.load(build_reference(tests::random_clusters(3, true, 1), mesh.bounds(), kSun)),
+        std::invalid_argument);
+}
+
+TEST_F(MetricInsertion, TakesTheMemoryItSays) {
+    const Clustering clustering = tests::random_clusters(5000, true, 3);
+    const std::uint64_t before = tests::device().allocated_bytes();
+    MetricTreeBuild target(tests::device(), {});
+    run(target, clustering, kOutside);
+    EXPECT_LE(tests::device().allocated_bytes() - before, target.required_bytes(5000, 0) + 1024);
+}
+
 }  // namespace
-}  // namespace structures::metric_tree
