@@ -150,11 +150,12 @@ uint sum_to_here(uint mine) {
 
 // ---- A range's way through its phases -------------------------------------------------------------
 
-/// Whether the parts are smaller than the whole by enough to bound the depth.
+/// Whether the parts are smaller than the whole by enough to bound the depth; of few elements, the
+/// pivot alone is enough.
 bool progresses(Task task) {
     const uint others = task.range.count - 1;
     const uint largest = max(max(task.counts[0], task.counts[1]), task.counts[2]);
-    return largest + max(others / 32, 1u) <= others;
+    return task.range.count <= kSubtreeElements || largest + others / kSubtreeElements <= others;
 }
 
 uint first_phase(Range range) {

@@ -47,13 +47,11 @@ pool::ClientSpec client_spec(const gpu::Device& device, BuilderKind builder,
         const std::uint32_t candidates = by_cost ? 3 * std::min(kQuantiles, count) : count;
         return (candidates / stride + 1) * ((by_cost ? 2 : 1) * count + 1);
     };
-    // The longest subtree is one where every range loses but its pivot and one element more, and
-    // that after kTries.
+    // The longest subtree is one where every range loses but its pivot.
     const std::uint32_t turn = pool::turn_iterations(device, kLoops);
     std::uint32_t subtree = 0;
-    for (std::uint32_t count = kSubtreeElements; count > leaf; count -= 2)
-        subtree += (kTries + 1) * (count + choice(count, lanes) + 4 * (count / lanes + 1) + turn) +
-                   leaf + turn;
+    for (std::uint32_t count = kSubtreeElements; count > leaf; --count)
+        subtree += count + choice(count, lanes) + 4 * (count / lanes + 1) + 2 * turn;
     for (std::uint32_t count = leaf; count-- > 0;) subtree += 3 * leaf + choice(count, 1) + turn;
     const std::uint32_t large =
         kPivotSample + choice(kDeltaSample, lanes) + 8 * kChunkElements / lanes;
