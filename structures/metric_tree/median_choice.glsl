@@ -15,11 +15,9 @@ uint pick(Task task, uint index, uint count) {
     return high;
 }
 
-/// x to the power 3/4: what a subtree of so many elements costs, see reference.cpp.
-float subtree_cost(float count) { return sqrt(count) * sqrt(sqrt(count)); }
-
-/// Expected cost of a query among the elements whose `count` reaches begin at `from`, queries being
-/// spread like their middles.
+/// Expected cost of a query among the elements whose `count` reaches begin at `from`: queries are spread
+/// like their middles, and a part costs as much as it has elements. That it costs less, as reference.cpp
+/// has it, made trees worse here: 1.6 times as many nodes visited with the square root.
 float cost_of(uint from, uint count, float delta) {
     Bounds bounds = no_bounds();
     vec3 sizes = vec3(0), entering = vec3(0);
@@ -34,7 +32,7 @@ float cost_of(uint from, uint count, float delta) {
         entering += vec3(d <= bounds.near_max, d >= bounds.far_min,
                          d >= bounds.over_min && d <= bounds.over_max);
     }
-    return dot(entering, vec3(subtree_cost(sizes.x), subtree_cost(sizes.y), subtree_cost(sizes.z)));
+    return dot(entering, sizes);
 }
 
 /// By how much more of the middles are on one side of delta than on the other.
@@ -68,35 +66,43 @@ Choice best_delta(uint from, uint count, uint start, uint stride) {
     return best;
 }
 
+/// How good a pivot is that has these reaches, with a delta by cost: the spread of the distances. A median
+/// often is a bad delta, so pivots for it are judged by cost, at their mean distance.
+float merit_of(uint from, uint count) {
+    float sum = 0, squares = 0;
+    for (uint k = 0; k < count; ++k) sum += reaches[from + k].z;
+    const float mean = sum / float(max(count, 1u));
+    if (!kByCost) return -cost_of(from, count, mean);
+    for (uint k = 0; k < count; ++k) squares += (reaches[from + k].z - mean) * (reaches[from + k].z - mean);
+    return squares;
+}
+
 /// Sets the task's pivot and delta. After kTries that did not tell elements apart, the first element
 /// that all others overlap.
 void choose(inout Task task) {
     const Range range = task.range;
     const bool listed = task.attempt == kTries;
     // Each lane has a candidate.
-    const uint place = range.first + (listed ? 0 : pick(task, gl_SubgroupInvocationID, range.count));
+    const uint candidate = gl_SubgroupInvocationID % kCandidates, row = candidate * kPivotSample;
+    const uint place = range.first + (listed ? 0 : pick(task, candidate, range.count));
     const uint id = id_at(range.side, place);
     const Element mine = element_of(id);
     const uint samples = listed ? 0 : min(range.count, kPivotSample);
-    float first = 0, sum = 0, squares = 0;
     for (uint k = 0; k < samples; ++k) {
-        const uint other = samples == range.count ? k : pick(task, kLanes + k, range.count);
-        const Element element = element_of(id_at(range.side, range.first + other));
-        const float d = distance_to(middle_of(element), mine.a, mine.b);
-        if (k == 0) first = d;
-        sum += d - first;
-        squares += (d - first) * (d - first);
+        const uint other =
+            samples == range.count ? k : pick(task, kCandidates + k, range.count);
+        reaches[row + k] = reach_between(mine, element_of(id_at(range.side, range.first + other)));
     }
-    // The widest spread; of equal ones, the lowest lane's.
-    float spread = squares - sum * sum / float(max(samples, 1u));
-    uint lane = gl_SubgroupInvocationID;
+    float merit = merit_of(row, samples);
+    uint lane = gl_SubgroupInvocationID;  // of equal ones, the lowest
     [[unroll]] for (uint apart = kLanes / 2; apart > 0; apart /= 2) {
-        const float other = subgroupShuffleXor(spread, apart);
+        const float other = subgroupShuffleXor(merit, apart);
         const uint from = subgroupShuffleXor(lane, apart);
-        const bool take = other > spread || (other == spread && from < lane);
-        spread = take ? other : spread;
+        const bool take = other > merit || (other == merit && from < lane);
+        merit = take ? other : merit;
         lane = take ? from : lane;
     }
+    subgroup_sync();
     lane = subgroupShuffle(lane, 0);  // also if something is not a number
     task.pivot = subgroupShuffle(place, lane);
     task.node = subgroupShuffle(id, lane);
@@ -105,7 +111,7 @@ void choose(inout Task task) {
     const uint others = range.count - 1, sampled = listed ? 0 : min(others, kDeltaSample);
     for (uint k = gl_SubgroupInvocationID; k < sampled; k += kLanes) {
         const uint other =
-            range.first + (sampled == others ? k : pick(task, kLanes + kPivotSample + k, others));
+            range.first + (sampled == others ? k : pick(task, kCandidates + kPivotSample + k, others));
         const uint at = other + (other >= task.pivot ? 1 : 0);
         reaches[k] = reach_between(pivot, element_of(id_at(range.side, at)));
     }
@@ -120,5 +126,5 @@ void choose(inout Task task) {
     subgroup_sync();
     task.delta = listed ? -1.0 : subgroupShuffle(best.delta, 0);
     if (is_large(range)) clear_tally(range);
-    pool_spend(samples + sampled / kLanes + 1 + choice_iterations(sampled, kLanes));
+    pool_spend(3 * samples + sampled / kLanes + 1 + choice_iterations(sampled, kLanes));
 }

@@ -31,7 +31,6 @@ void build_leaf(Range range) {
     while (subgroupAny(open)) {
         Bounds bounds = no_bounds();
         uint others = 0;
-        float first = 0, sum = 0, squares = 0;
         for (uint other = 0; other < range.count; ++other) {
             const Element its = Element(subgroupShuffle(element.a, other),
                                         subgroupShuffle(element.b, other),
@@ -39,17 +38,11 @@ void build_leaf(Range range) {
             const float its_depth = subgroupShuffle(min_depth, other);
             if ((members >> other & 1) != 0) {
                 bounds.min_depth = min(bounds.min_depth, its_depth);
-                if (other != lane) {
-                    const vec3 reach = reach_between(element, its);
-                    if (others == 0) first = reach.z;
-                    sum += reach.z - first;
-                    squares += (reach.z - first) * (reach.z - first);
-                    reaches[row + others++] = reach;
-                }
+                if (other != lane) reaches[row + others++] = reach_between(element, its);
             }
         }
         const Choice choice = best_delta(row, others, 0, 1);
-        const float merit = kByCost ? -choice.cost : squares - sum * sum / float(max(others, 1u));
+        const float merit = -cost_of(row, others, choice.delta);
         const uint pivot = best_lane(members, merit, range.count);
 
         uint parts[3] = uint[](0, 0, 0);

@@ -30,9 +30,11 @@ MEDIAN_CONSTANT uint kChunkElements = 256;
 MEDIAN_CONSTANT uint kSubtreeElements = 32;
 /// In a range that a subgroup holds in its lanes, at most.
 MEDIAN_CONSTANT uint kMostLeafRange = 16;
-/// Elements that candidates for a pivot are judged by, and those that candidates for delta are.
+/// Candidates for a pivot, no more than lanes; elements that they are judged by, and those that
+/// candidates for delta are.
+MEDIAN_CONSTANT uint kCandidates = 8;
 MEDIAN_CONSTANT uint kPivotSample = 32;
-MEDIAN_CONSTANT uint kDeltaSample = 64;
+MEDIAN_CONSTANT uint kDeltaSample = 128;
 /// Distances of each kind that are tried as delta by cost.
 MEDIAN_CONSTANT uint kQuantiles = 8;
 /// Pivots tried before what is left becomes a list.
