@@ -34,7 +34,7 @@ MEDIAN_CONSTANT uint kMostLeafRange = 16;
 /// candidates for delta are.
 MEDIAN_CONSTANT uint kCandidates = 8;
 MEDIAN_CONSTANT uint kPivotSample = 32;
-MEDIAN_CONSTANT uint kDeltaSample = 128;
+MEDIAN_CONSTANT uint kDeltaSample = 64;
 /// Distances of each kind that are tried as delta by cost.
 MEDIAN_CONSTANT uint kQuantiles = 8;
 /// Pivots tried before what is left becomes a list.
