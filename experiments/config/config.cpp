@@ -41,7 +41,7 @@ std::size_t find_reference(const Config& config, const std::string& name, const 
     std::vector<std::string> known;
     for (std::size_t i = 0; i < config.methods.size(); ++i) {
         const Method& method = config.methods[i];
-        if (method.name == name || method.name + " " + method.variant == name) return i;
+        if (method.name == name || method.label() == name) return i;
         known.push_back(method.name);
     }
     fail(where, unknown("reference method", name, known));
@@ -138,6 +138,8 @@ Config resolve(const Node& root, const std::filesystem::path& file, const Catalo
     } else {
         config.repeat = int(table.integer("repeat", 1, 100000).value_or(config.repeat));
         config.warmup = int(table.integer("warmup", 0, 100000).value_or(config.warmup));
+    }
+    if (config.kind == "shadows") {
         config.truth = table.boolean("truth").value_or(config.truth);
         config.pictures = table.boolean("pictures").value_or(config.pictures);
         reference = table.text("reference");
@@ -177,8 +179,7 @@ nlohmann::json to_json(const Config& config) {
                            {"pictures", config.pictures},
                            {"scenes", nlohmann::json::array()},
                            {"methods", nlohmann::json::array()}};
-    json["reference"] =
-        config.methods[config.reference].name + " " + config.methods[config.reference].variant;
+    json["reference"] = config.methods[config.reference].label();
     if (config.stability) json["stability"] = to_json(*config.stability);
     for (const Scene& scene : config.scenes) json["scenes"].push_back(to_json(scene));
     for (const Method& method : config.methods)

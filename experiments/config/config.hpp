@@ -36,6 +36,9 @@ struct Method {
     std::string name;     ///< of the registry
     std::string variant;  ///< unique together with `name`
     structures::Settings settings{};
+
+    /// "bvh query=lane", also "bvh default".
+    std::string label() const { return name + " " + variant; }
 };
 
 struct Config {
@@ -47,10 +50,10 @@ struct Config {
     std::int64_t seed = 1;
     bool truth = true;          ///< kind "shadows": judge every answer by shadows/truth
     bool pictures = true;       ///< kind "shadows": draw every answer
-    std::size_t reference = 0;  ///< index of the method whose answer the others are compared with
+    std::size_t reference = 0;  ///< kind "shadows": index of the method to compare answers with
     std::vector<Scene> scenes;  ///< none for kind "stability", which has its own
     std::vector<Method> methods;
-    std::optional<Stability> stability{};  ///< for kind "stability" alone
+    std::optional<stability::Selection> stability{};  ///< for kind "stability" alone
 };
 
 /// Kinds of experiment that this version can run.

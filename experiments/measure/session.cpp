@@ -25,6 +25,17 @@ bool Session::attempt(const std::string& place, const std::function<void()>& wor
     return false;
 }
 
+void Session::attempt_scenes(const std::function<void(const config::Scene&)>& work) {
+    const int steps = int(config.methods.size()) * (config.warmup + config.repeat);
+    steps_total = int(config.scenes.size()) * steps;
+    for (std::size_t i = 0; i < config.scenes.size(); ++i) {
+        const config::Scene& scene = config.scenes[i];
+        steps_done = int(i) * steps;
+        if (!samples.complete({scene.name, kSceneRows, "", 0, 0}))
+            attempt(scene.name, [&] { work(scene); });
+    }
+}
+
 void Session::fail(const std::string& message) {
     failures.push_back(message);
     progress.error(message);

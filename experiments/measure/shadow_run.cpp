@@ -20,8 +20,6 @@ struct Contestant {
     const config::Method* config;
     std::unique_ptr<shadows::Method> method{};  ///< none once it has failed
     shadows::Visibility visible{};              ///< last answer
-
-    std::string label() const { return config->name + " " + config->variant; }
 };
 
 /// One bit per point with geometry.
@@ -32,18 +30,6 @@ std::vector<std::uint32_t> geometry_mask(const shadows::Points& points) {
     return mask;
 }
 
-const shadows::MethodRow& find_row(const Registries& registries, const std::string& name) {
-    for (const shadows::MethodRow& row : registries.methods)
-        if (row.name == name) return row;
-    throw std::logic_error("method '" + name + "' has left the registry");
-}
-
-double value_of(const structures::Samples& samples, std::string_view metric) {
-    for (const structures::Sample& sample : samples)
-        if (sample.metric == metric) return sample.value;
-    return 0;
-}
-
 void add(structures::Samples& samples, const structures::Samples& more) {
     samples.insert(samples.end(), more.begin(), more.end());
 }
@@ -51,6 +37,7 @@ void add(structures::Samples& samples, const structures::Samples& more) {
 /// Build and query once; the samples of both and their sum.
 structures::Samples answer(Contestant& contestant, const SceneInput& input,
                            const shadows::Points& points) {
+    contestant.method->expect(points);
     structures::Samples samples = contestant.method->build(input.light);
     const structures::Samples asked = contestant.method->query(points, contestant.visible);
     if (contestant.visible.words.size() != points.count() / 32)
@@ -102,15 +89,15 @@ class SceneRun {
 
   private:
     std::string place(const Contestant& contestant) const {
-        return scene_.name + ", " + contestant.label();
+        return scene_.name + ", " + contestant.config->label();
     }
 
     void prepare(const SceneInput& input) {
         for (const config::Method& method : session_.config.methods) {
             Contestant& contestant = contestants_.emplace_back(&method);
             const bool ready = session_.attempt(place(contestant), [&] {
-                const shadows::MethodRow& row = find_row(session_.registries, method.name);
-                contestant.method = row.create(session_.device, method.settings);
+                contestant.method = config::find_row(session_.registries.methods, method.name)
+                                        .create(session_.device, method.settings);
                 contestant.method->prepare(input.mesh);
             });
             if (!ready) contestant.method.reset();
@@ -121,7 +108,7 @@ class SceneRun {
     void attempt(Contestant& contestant, const SceneInput& input, int repetition) {
         const Key key{scene_.name, contestant.config->name, contestant.config->variant, 0,
                       repetition};
-        session_.step(fmt::format("{}  {}  {}", scene_.name, contestant.label(),
+        session_.step(fmt::format("{}  {}  {}", scene_.name, contestant.config->label(),
                                   repetition < 0 ? "warm-up" : fmt::format("#{}", repetition + 1)));
         if (!contestant.method || session_.samples.complete(key)) return;
         const bool done = session_.attempt(place(contestant), [&] {
@@ -177,14 +164,7 @@ class SceneRun {
 }  // namespace
 
 void run_shadows(Session& session) {
-    const int steps = session.steps_total() / int(session.config.scenes.size());
-    for (std::size_t i = 0; i < session.config.scenes.size(); ++i) {
-        const config::Scene& scene = session.config.scenes[i];
-        session.steps_done = int(i) * steps;
-        if (session.samples.complete({scene.name, kSceneRows, "", 0, 0})) continue;
-        session.attempt(scene.name, [&] { SceneRun(session, scene).run(); });
-    }
-    check_claims(session);
+    session.attempt_scenes([&](const config::Scene& scene) { SceneRun(session, scene).run(); });
 }
 
 }  // namespace experiments::measure

@@ -9,8 +9,8 @@
 //   lane    one segment per lane
 //   packet  a subgroup's segments share one stack
 //   beam    a subgroup owns a tile of 16 x 16 points and walks the tree with the tile's frustum
-// Points of beams that meet too many triangles, or fill their stack or take too long, go on in packets,
-// in the same kernel.
+// Points of beams that meet too many triangles, or fill their stack or take too long, go on in
+// packets, in the same kernel.
 #pragma once
 
 #include "shadows/bvh/leaf_shared.h"

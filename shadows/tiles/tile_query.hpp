@@ -1,5 +1,5 @@
-// A shadow query that answers tile by tile: for each G-buffer point, is the segment to the light free?
-// Whatever structure is walked, this is the host's side of it.
+// A shadow query that answers tile by tile: for each G-buffer point, is the segment to the light
+// free? Whatever structure is walked, this is the host's side of it.
 //
 //     TileQuery query(device, limits, {query_shader, deferred_shader, constants});
 //     query.prepare(points.count());
@@ -10,8 +10,8 @@
 //
 // The kernels include shadows/tiles/{tiles,lanes,packets,beams}.glsl. What the first cannot finish
 // within its limits, or without the last resort of the exact test (occludes_exactly), is left to a
-// per-point walk, recorded behind it as an indirect dispatch; nothing is dropped, and the status counts
-// what happened.
+// per-point walk, recorded behind it as an indirect dispatch; nothing is dropped, and the status
+// counts what happened.
 #pragma once
 
 #include <array>
@@ -55,13 +55,12 @@ class TileQuery {
     void prepare(std::uint32_t point_count);
     std::size_t memory_bytes() const;
 
-    /// Records one query of `structure`, the kernel's struct Structure: `points` is the address of four
-    /// planes of `point_count` words (Points). Submits nothing. Throws std::invalid_argument if more
-    /// points were not prepared for.
+    /// Records one query of `structure`, the kernel's struct Structure: `points` is the address of
+    /// four planes of `point_count` words (Points). Submits nothing. Throws std::invalid_argument
+    /// if more points were not prepared for.
     template <typename Structure>
-    void record(taskpool::gpu::Recorder& recorder, const Structure& structure,
-                std::uint64_t points, std::uint32_t point_count,
-                const structures::geometry::Light& light) {
+    void record(taskpool::gpu::Recorder& recorder, const Structure& structure, std::uint64_t points,
+                std::uint32_t point_count, const structures::geometry::Light& light) {
         static_assert(std::is_trivially_copyable_v<Structure> && sizeof(Structure) % 8 == 0);
         const QueryPush<Structure> push{push_for(points, point_count, light), structure};
         record_clearing(recorder);

@@ -11,8 +11,8 @@ class GatherTriangles {
     explicit GatherTriangles(taskpool::gpu::Device& device);
 
     /// Device addresses: uint[count] of triangles, vec3[] of positions, uvec3[triangle_count] of
-    /// corners, and CornerTriangle[count] of what is written. Places of `order` that name no triangle
-    /// get the primitive 0xffffffff and corners of 0.
+    /// corners, and CornerTriangle[count] of what is written. Places of `order` that name no
+    /// triangle get the primitive 0xffffffff and corners of 0.
     struct Arrays {
         std::uint64_t order, positions, corners, target;
         std::uint32_t count, triangle_count;

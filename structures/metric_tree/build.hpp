@@ -55,6 +55,9 @@ class MetricTreeBuild final : public taskpool::pool::Job {
     void prepare(const Clustering& clustering, const geometry::TriangleMesh& mesh);
     /// The light of builds from the next restart() on; before, a point light at the origin.
     void set_light(const geometry::Light& light) { light_ = light; }
+    /// Address of a mask with a bit per cluster, of those that builds from now on keep; 0: all. It has
+    /// to be written when the first recorded launch runs.
+    void set_mask(std::uint64_t keep) { keep_ = keep; }
     /// Uploads a tree built elsewhere, from the clustering that was prepared. Throws
     /// std::invalid_argument if the number of nodes is another.
     void load(const Tree& tree);
@@ -66,6 +69,8 @@ class MetricTreeBuild final : public taskpool::pool::Job {
     double progress() const override;
 
     MetricTreeView view() const;
+    /// The frame of set_light() and the mesh.
+    LightFrame frame() const;
     /// Whether some of the clusters prepared are no balls.
     bool has_capsules() const { return capsules_; }
     const BuildConfig& config() const { return config_; }
@@ -84,6 +89,7 @@ class MetricTreeBuild final : public taskpool::pool::Job {
     geometry::Aabb bounds_;
     std::uint32_t cluster_count_ = 0;
     bool capsules_ = false;
+    std::uint64_t keep_ = 0;
     taskpool::gpu::Buffer clusters_, nodes_, triangles_, header_;
     std::unique_ptr<Kernels> kernels_[2][2];  ///< [directional][capsules], made when first needed
     Kernels* active_ = nullptr;

@@ -3,11 +3,11 @@
 //     Clustering clusters = cluster(mesh, {.max_triangles = 16});
 //     assert(validate(mesh, clusters).empty());
 //
-// Triangles are sorted by the Morton code of their centroid and cut into chunks of 512; each chunk is
-// split by k-means until no part has more than `max_triangles`. F. Deves et al., "Scalable Real-Time
-// Shadows using Clustering and Metric Trees", 2018, section 4; what the paper leaves open is said in
-// clustering.cpp. Degenerate triangles are left out. Chunks are independent and run in parallel; the
-// result does not depend on how.
+// Triangles are sorted by the Morton code of their centroid and cut into chunks of 512; each chunk
+// is split by k-means until no part has more than `max_triangles`. F. Deves et al., "Scalable
+// Real-Time Shadows using Clustering and Metric Trees", 2018, section 4; what the paper leaves open
+// is said in clustering.cpp. Degenerate triangles are left out. Chunks are independent and run in
+// parallel; the result does not depend on how.
 #pragma once
 
 #include <functional>
@@ -36,8 +36,8 @@ struct Clustering {
 Clustering cluster(const geometry::TriangleMesh& mesh, const ClusterConfig& config,
                    const std::function<void(double)>& progress = {});
 
-/// One line per violation: every triangle that is not degenerate in exactly one cluster; vertices in
-/// the ball or capsule and in the slab; normals in the cone; sizes within the limit.
+/// One line per violation: every triangle that is not degenerate in exactly one cluster; vertices
+/// in the ball or capsule and in the slab; normals in the cone; sizes within the limit.
 std::vector<std::string> validate(const geometry::TriangleMesh& mesh, const Clustering& clustering,
                                   const ClusterConfig& config);
 

@@ -29,7 +29,7 @@ constexpr std::uint32_t kChunksPerSubgroup = 4;
 
 pool::ClientSpec client_spec(const Variant& variant) {
     return {.task_bytes = sizeof(Task),
-            .chunk_iterations = kLanePlaces * kMaxDepth + 16,
+            .chunk_iterations = kLanePlaces * (kMaxDepth + 1) + 16,
             .constants = variant.constants(),
             .loops = 2};
 }

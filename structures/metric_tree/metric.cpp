@@ -135,8 +135,12 @@ double distance_to(bool directional, const dvec3& p, const Element& element) {
     } else {
         const double ae = glm::dot(a, e), pa = glm::dot(p, a), pe = glm::dot(p, e);
         const double den = pa * ee - pe * ae;
-        t = den > 0 ? std::clamp((pe * glm::dot(a, a) - pa * ae) / den, 0.0, 1.0)
-                    : (glm::dot(p, b) > pa ? 1.0 : 0.0);
+        if (den > 0) {
+            t = std::clamp((pe * glm::dot(a, a) - pa * ae) / den, 0.0, 1.0);
+        } else {
+            const double at_a = glm::length(glm::cross(p, a)), at_b = glm::length(glm::cross(p, b));
+            t = glm::dot(p, b) * at_a > pa * at_b ? 1.0 : 0.0;
+        }
     }
     return distance_between(directional, p, a + t * e);
 }
@@ -166,11 +170,11 @@ Role make_element(const LightFrame& frame, const Cluster& cluster, bool cull_fac
     if (frame.directional != 0) {
         const double nearest =
             std::min(depth_of(frame, cluster.a), depth_of(frame, cluster.b)) - radius;
-        min_depth = std::max((nearest - kMetricError) * shrunk, 0.0);
+        min_depth = std::max(0.0, (nearest - kMetricError) * shrunk);
         element.radius = radius + kMetricError;
     } else {
         const double away = distance_to_segment(element.a, element.b);
-        min_depth = std::max((away - radius) * shrunk, 0.0);
+        min_depth = std::max(0.0, (away - radius) * shrunk);
         // Also where a coordinate is not finite.
         if (!(away > radius * (1 + 0x1p-10)) || !(glm::dot(element.a, element.b) >= 0))
             return Role::special;

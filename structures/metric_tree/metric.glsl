@@ -3,7 +3,7 @@
 // elements are balls. metric.hpp is the same in C++.
 //
 // Every distance returned is off by less than kMetricError / 4 = 2^-20, for arcs of at most 90
-// degrees and coordinates in the plane of at most 4:
+// degrees and places in the plane at most 3.5 from its origin:
 // - angles come from atan2 of products, never from acos: with e = 2^-24 the products err by a few e,
 //   the arc tangent below by 1.9e-7 (its greatest error, found by trial of 4 * 10^5 angles);
 // - the nearest point of an arc stems from e = b - a and is off along the arc by a few e, which moves
@@ -52,8 +52,13 @@ float distance_to(vec3 p, vec3 a, vec3 b) {
         // The stationary point of p . q / |q| over q = a + t e.
         const float ae = dot(a, e), pa = dot(p, a), pe = dot(p, e);
         const float den = pa * ee - pe * ae;
-        t = den > 0 ? clamp((pe * dot(a, a) - pa * ae) / den, 0.0, 1.0)
-                    : (dot(p, b) > pa ? 1.0 : 0.0);
+        if (den > 0) {
+            t = clamp((pe * dot(a, a) - pa * ae) / den, 0.0, 1.0);
+        } else {
+            // That point is the farthest. Which end is nearer only their cotangents say: opposite p
+            // all cosines are alike.
+            t = dot(p, b) * length(cross(p, a)) > pa * length(cross(p, b)) ? 1.0 : 0.0;
+        }
     }
     return distance_between(p, a + t * e);
 }

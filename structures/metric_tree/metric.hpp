@@ -36,11 +36,11 @@ Reach reach_of(bool directional, const Element& pivot, const Element& element);
 
 enum class Role {
     element,
-    special,     ///< around or near the light, wider than kWidestElement, or an arc above 90 degrees
+    special,  ///< around or near the light, wider than kWidestElement, or an arc above 90 degrees
     faces_away,  ///< from the light, all of its triangles (only if asked to look)
 };
-/// What the cluster is to the light and, for an element, how it is seen, widened by kMetricError, and
-/// its least depth, rounded down.
+/// What the cluster is to the light and, for an element, how it is seen, widened by kMetricError,
+/// and its least depth, rounded down.
 Role make_element(const LightFrame& frame, const Cluster& cluster, bool cull_facing,
                   Element& element, double& min_depth);
 /// A node without subtrees.

@@ -7,7 +7,8 @@
 namespace structures::metric_tree {
 
 enum class Split {
-    median,  ///< pivot after Yianilos 1993, delta the median distance of the elements' middles (Uhlmann 1991)
+    median,  ///< pivot after Yianilos 1993, delta the median distance of the elements' middles
+             ///< (Uhlmann 1991)
     cost,    ///< delta of least expected cost among quantiles of the elements' distances
 };
 

@@ -1,4 +1,5 @@
-// What a config may say about metric trees, for the structure and for shadow methods that build one.
+// What a config may say about metric trees, for the structure and for shadow methods that build
+// one.
 #pragma once
 
 #include <optional>

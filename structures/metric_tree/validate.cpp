@@ -185,12 +185,13 @@ class Validator {
         equal("cluster_count", header.cluster_count, clusters_.size());
         equal("special_count", header.special_count, tree_.special.size());
         equal("inserted", header.inserted, shape_.preorder.size());
-        equal("culled_facing", header.culled_facing, left_out_);
+        equal("culled clusters", header.culled_facing + header.culled_unseen, left_out_);
         std::uint32_t depth = 0;
         for (const std::uint32_t d : shape_.depth) depth = std::max(depth, d);
-        if (header.depth_max > depth || depth > header.depth_max + header.bucketed)
-            fail("header: the longest path has {} nodes, not {} and up to {} in a list", depth,
-                 header.depth_max, header.bucketed);
+        // Nodes in lists do not count as depth.
+        if (header.depth_max > depth || depth > std::uint64_t{header.depth_max} + header.bucketed)
+            fail("header: depth_max is {} without {} elements in lists, not {} with them",
+                 header.depth_max, header.bucketed, depth);
         if (header.bucketed > header.inserted)
             fail("header: {} elements in lists of {} inserted", header.bucketed, header.inserted);
     }

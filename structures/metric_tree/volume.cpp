@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "structures/metric_tree/rounding.hpp"
+
 namespace structures::metric_tree {
 namespace {
 
@@ -18,13 +20,6 @@ using glm::dvec3;
 constexpr double kSpare = 4 * 0x1p-24;
 /// A capsule where the corners reach this much farther along their first axis than their second.
 constexpr double kLongish = 2;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-float rounded_up(double value) {
-    const auto nearest = static_cast<float>(value);
-    return nearest < value ? std::nextafter(nearest, kInfinity) : nearest;
-}
-float rounded_down(double value) { return -rounded_up(-value); }
 
 /// A ball with all points of its support on its surface, and the directions they span.
 struct Ball {
@@ -104,11 +99,12 @@ dmat3 eigenvectors(dmat3 matrix) {
     return {axes[rank[0]], axes[rank[1]], axes[rank[2]]};
 }
 
-/// Each once, as far as their indices tell, relative to their mean.
+/// Each once, as far as their indices tell.
 struct Corners {
+    std::vector<glm::vec3> exact;
     dvec3 mean{0};
-    std::vector<dvec3> places;
-    dmat3 axes;  ///< principal ones
+    std::vector<dvec3> places;  ///< relative to the mean
+    dmat3 axes;                 ///< principal ones
 
     Corners(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
         std::vector<std::uint32_t> used;
@@ -118,8 +114,12 @@ struct Corners {
         std::sort(used.begin(), used.end());
         used.erase(std::unique(used.begin(), used.end()), used.end());
         places.reserve(used.size());
-        for (const std::uint32_t position : used) places.push_back(mesh.positions[position]);
-        for (const dvec3& place : places) mean += place;
+        exact.reserve(used.size());
+        for (const std::uint32_t position : used) {
+            exact.push_back(mesh.positions[position]);
+            places.push_back(exact.back());
+            mean += places.back();
+        }
         mean /= static_cast<double>(places.size());
         dmat3 covariance(0);
         for (dvec3& place : places) {
@@ -259,20 +259,18 @@ Cluster fit_volume(const TriangleMesh& mesh, std::span<const std::uint32_t> tria
     cluster.count = static_cast<std::uint32_t>(triangles.size());
     fit_cone(mesh, triangles, axes[2], cluster);
 
-    // Only now that axis and ends are rounded: how far the corners, exact in double, are.
+    // Only now that axis and ends are rounded: how far the corners are.
     const dvec3 direction = cluster.axis;
     double reach = 0, low = std::numeric_limits<double>::infinity(), high = -low, farthest = 0,
            largest = std::max(largest_coordinate(cluster.a), largest_coordinate(cluster.b));
-    for (const std::uint32_t triangle : triangles)
-        for (int k = 0; k < 3; ++k) {
-            const dvec3 corner = mesh.corner(triangle, k);
-            const double along = glm::dot(direction, corner);
-            reach = std::max(reach, distance_to_axis(cluster, corner));
-            low = std::min(low, along);
-            high = std::max(high, along);
-            farthest = std::max(farthest, glm::length(corner));
-            largest = std::max(largest, largest_coordinate(corner));
-        }
+    for (const dvec3 corner : corners.exact) {
+        const double along = glm::dot(direction, corner);
+        reach = std::max(reach, distance_to_axis(cluster, corner));
+        low = std::min(low, along);
+        high = std::max(high, along);
+        farthest = std::max(farthest, glm::length(corner));
+        largest = std::max(largest, largest_coordinate(corner));
+    }
     const double spare = kSpare * farthest * glm::length(direction);
     cluster.radius = rounded_up(reach + kSpare * largest);
     cluster.slab_low = rounded_down(low - spare);

@@ -10,6 +10,7 @@
 #include "tests/structures/meshes.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/occlusion.hpp"
+#include "tests/support/points.hpp"
 
 namespace {
 
@@ -38,21 +39,13 @@ Scene make_scene(std::uint32_t width, std::uint32_t height) {
     Scene scene;
     scene.width = width;
     scene.height = height;
-    const std::size_t count = ((width + 15) / 16) * ((height + 15) / 16) * kTilePoints;
-    scene.points.x.assign(count, 0);
-    scene.points.y = scene.points.z = scene.points.x;
-    scene.points.primitive.assign(count, kNoPrimitive);
-    scene.points.normal.assign(count, glm::vec3(0, 0, 1));
+    scene.points = tests::no_points(width, height);
     return scene;
 }
 
 void set_point(Scene& scene, std::uint32_t x, std::uint32_t y, glm::vec3 p,
-               std::uint32_t primitive = 0xfffffffeu) {
-    const std::uint32_t i = point_index(x, y, scene.width);
-    scene.points.x[i] = p.x;
-    scene.points.y[i] = p.y;
-    scene.points.z[i] = p.z;
-    scene.points.primitive[i] = primitive;
+               std::uint32_t primitive = kNoReceiver) {
+    tests::set_point(scene.points, point_index(x, y, scene.width), p, primitive);
 }
 
 struct Result {
@@ -89,8 +82,8 @@ std::vector<bool> expected_lit(const Scene& scene) {
     std::vector<bool> lit(scene.points.x.size(), true);
     for (std::size_t i = 0; i < lit.size(); ++i)
         if (scene.points.primitive[i] != kNoPrimitive)
-            lit[i] = !tests::occluded({scene.points.x[i], scene.points.y[i], scene.points.z[i]},
-                                      scene.points.primitive[i], scene.light, scene.mesh);
+            lit[i] = !tests::occluded(tests::position(scene.points, i), scene.points.primitive[i],
+                                      scene.light, scene.mesh);
     return lit;
 }
 

@@ -414,6 +414,62 @@ TEST_F(IzbShadow, FullListsLoseNothing) {
     EXPECT_EQ(differences(tight.visible, expected), 0u);
 }
 
+TEST_F(IzbShadow, WhatDoublePrecisionCannotTell) {
+    // The light and all points in the plane of all triangles, which is parallel to no axis: exact
+    // zeros, which double precision takes for doubts. More pairs than their list has room for.
+    Random random(new_seed());
+    const auto whole = [&](float size) { return std::round(size * (2 * random.unit() - 1)); };
+    const auto in_plane = [&] {
+        return whole(500) * glm::vec3(1, 2, 4) + whole(500) * glm::vec3(3, -1, 5);
+    };
+    Scene flat;
+    for (int i = 0; i < 300; ++i) add_triangle(flat.mesh, in_plane(), in_plane(), in_plane());
+    no_points(flat, 2000);
+    for (std::uint32_t i = 0; i < 2000; ++i) set_point(flat, i, in_plane());
+    flat.light.vector = in_plane();
+    const std::vector<bool> nothing = brute_force(flat);
+    for (std::uint32_t resolution : {0u, 1u}) {
+        const Answer answer = run(flat, {.resolution = resolution});
+        EXPECT_EQ(differences(answer.visible, nothing), 0u);
+        EXPECT_GT(answer.result.unsure, flat.points.x.size());
+        EXPECT_GT(answer.result.passes, 1u);
+    }
+    // Segments through the middle of an edge, which belongs to the triangle.
+    Scene edges;
+    const auto even = [&] { return 2.0f * glm::vec3(whole(50), whole(50), whole(50)); };
+    edges.light.vector = even();
+    no_points(edges, 1000);
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        const glm::vec3 a = even(), b = even(), c = even();
+        if (i % 50 == 0) add_triangle(edges.mesh, a, b, c);
+        const std::size_t t = edges.mesh.triangle_count() - 1;
+        const int k = int(i % 3);
+        const glm::vec3 middle =
+            0.5f * (edges.mesh.corner(t, k) + edges.mesh.corner(t, (k + 1) % 3));
+        set_point(edges, i, middle + float(1 + i % 5) * (middle - edges.light.vector));
+    }
+    const std::vector<bool> expected = brute_force(edges);
+    const Answer answer = run(edges);
+    EXPECT_EQ(differences(answer.visible, expected), 0u);
+    EXPECT_GT(answer.result.unsure, 0u);
+}
+
+TEST_F(IzbShadow, PointsWhosePlaceOverflowsAreCounted) {
+    Scene scene = soup(47, 100, 0.5f, 1000);
+    scene.light.vector = {-2e38f, 0, 0};
+    for (std::uint32_t i : {3u, 500u, 999u}) set_point(scene, i, {3e38f, 0, 0});
+    set_point(scene, 4, {kNan, 0, 0});
+    const std::vector<bool> expected = brute_force(scene);
+    const Answer far = run(scene);
+    EXPECT_EQ(far.result.incomplete, 4u);
+    EXPECT_LE(differences(far.visible, expected), 4u);
+    EXPECT_EQ(run(directional(scene, {0, 1, 0})).result.incomplete, 4u);
+    // A point at the light has its answer.
+    scene = soup(48, 100, 0.5f, 1000);
+    set_point(scene, 7, scene.light.vector);
+    EXPECT_EQ(run(scene).result.incomplete, 0u);
+}
+
 TEST_F(IzbShadow, StatisticsCountWork) {
     const Scene scene = soup(43, 500, 0.3f, 3000);
     const Answer plain = run(scene), counted = run(scene, {.statistics = true});

@@ -2,12 +2,14 @@
 // and the clusters.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstring>
 #include <numbers>
 #include <set>
 
 #include "structures/metric_tree/build.hpp"
 #include "structures/metric_tree/reference.hpp"
+#include "structures/structure.hpp"
 #include "tests/structures/clusters.hpp"
 #include "tests/structures/meshes.hpp"
 #include "tests/support/gpu_fixture.hpp"
@@ -107,6 +109,27 @@ TEST_P(MetricBuild, IsValidInAnyOrderAndPool) {
         }
 }
 
+TEST_P(MetricBuild, IsValidAtAnyScaleAndPlace) {
+    for (const auto& [scale, shift] : {std::pair{1e-4f, 0.0f},
+                                       {1e4f, 0.0f},
+                                       {1e-30f, 0.0f},
+                                       {1e15f, 0.0f},
+                                       {1.0f, 0x1p20f},
+                                       {100.0f, -0x1p20f}}) {
+        SCOPED_TRACE(testing::Message() << "times " << scale << ", moved by " << shift);
+        Clustering clustering = tests::random_clusters(1000, true, 61);
+        for (Cluster& cluster : clustering.clusters) {
+            cluster.a = cluster.a * scale + shift;
+            cluster.b = cluster.b * scale + shift;
+            cluster.radius *= scale;
+        }
+        for (Light light : {kOutside, kInside, kSun}) {
+            if (light.type == Light::Type::point) light.vector = light.vector * scale + shift;
+            expect_valid(clustering, build(clustering, light));
+        }
+    }
+}
+
 /// Insertion depends on who comes first.
 TEST_P(MetricBuild, IsTheSameWhateverThePool) {
     if (GetParam() == BuilderKind::insertion) GTEST_SKIP();
@@ -139,7 +162,7 @@ TEST_P(MetricBuild, GivesAnotherTreeForAnotherSeed) {
 TEST_P(MetricBuild, BoundsPathsWhereAllOverlap) {
     // Copies of one cluster; clusters in a row from the light; spokes that all cross.
     Clustering copies, row, spokes;
-    for (int i = 0; i < 100'000; ++i)
+    for (int i = 0; i < 10'000; ++i)
         copies.clusters.push_back(make_cluster({0, 0, 0}, {0, 0, 0}, 0.1));
     for (int i = 0; i < 10'000; ++i) {
         const glm::dvec3 end(0, 0, -5 - 0.05 * i);
@@ -158,7 +181,10 @@ TEST_P(MetricBuild, BoundsPathsWhereAllOverlap) {
                                             << light.vector.z);
             expect_valid(*clustering, build(*clustering, light));
         }
-    EXPECT_GT(build(copies, kOutside).header.bucketed, 90'000u);
+    for (int i = 0; i < 90'000; ++i) copies.clusters.push_back(copies.clusters[0]);
+    const Tree tree = build(copies, kOutside);
+    expect_valid(copies, tree);
+    EXPECT_GE(tree.header.bucketed, 100'000 - kMaxDepth);
 }
 
 TEST_P(MetricBuild, ListsWhatIsAroundTheLight) {
@@ -223,6 +249,87 @@ TEST_P(MetricBuild, LoadsTreesBuiltElsewhere) {
     EXPECT_THROW(
         target.load(build_reference(tests::random_clusters(3, true, 1), mesh.bounds(), kSun)),
         std::invalid_argument);
+}
+
+/// Elements that a query at `point` meets on its way down the tree.
+std::set<std::uint32_t> met_by_walk(const Tree& tree, const glm::dvec3& point) {
+    const LightFrame& frame = tree.header.frame;
+    const double depth = depth_of(frame, point);
+    std::set<std::uint32_t> met;
+    std::vector<std::uint32_t> links{tree.header.root};
+    while (!links.empty()) {
+        const std::uint32_t link = links.back();
+        links.pop_back();
+        if (link == 0) continue;
+        const MetricNode& node = tree.nodes[link - 1];
+        if (depth < node.min_depth) continue;
+        const double d = distance_to(frame.directional != 0, seen(frame, point), element_of(node));
+        if (d <= node.radius) met.insert(link - 1);
+        if (d <= node.near_max) links.push_back(node.near);
+        if (d >= node.far_min) links.push_back(node.far);
+        if (d >= node.over_min && d <= node.over_max) links.push_back(node.over);
+    }
+    return met;
+}
+
+TEST_P(MetricBuild, QueriesMeetWhatBruteForceMeets) {
+    const Clustering clustering = tests::random_clusters(2000, true, 51);
+    for (const Light& light : {kOutside, kInside, kSun}) {
+        const Tree tree = build(clustering, light);
+        const LightFrame& frame = tree.header.frame;
+        Random random(52);
+        std::size_t met_count = 0;
+        for (int i = 0; i < 200; ++i) {
+            const glm::dvec3 point = random.in_box(1.5);
+            const std::set<std::uint32_t> met = met_by_walk(tree, point);
+            for (std::uint32_t id = 0; id < clustering.clusters.size(); ++id) {
+                Element element;
+                double min_depth;
+                if (make_element(frame, clustering.clusters[id], false, element, min_depth) !=
+                    Role::element)
+                    continue;
+                const Element stored = element_of(tree.nodes[id]);
+                const bool within = distance_to(frame.directional != 0, seen(frame, point),
+                                                stored) <= stored.radius;
+                const bool before = min_depth <= depth_of(frame, point);
+                ASSERT_FALSE(within && before && !met.contains(id))
+                    << "cluster " << id << " is not met at point " << i;
+                ASSERT_FALSE(!within && met.contains(id));
+                met_count += within && before ? 1 : 0;
+            }
+        }
+        EXPECT_GT(met_count, 100u);
+    }
+}
+
+using MetricRow = tests::GpuTest;
+
+TEST_F(MetricRow, HasEveryBuilder) {
+    const auto row =
+        std::ranges::find(structures::registry(), "metric_tree", &structures::StructureRow::name);
+    ASSERT_NE(row, structures::registry().end());
+    const tests::TriangleMesh mesh = tests::sphere(40, 60, {1, -2, 3}, 5);
+    for (const char* kind : {"insertion", "median", "cost", "cpu_median", "cpu_cost"})
+        for (const bool directional : {false, true})
+            for (const double height : {0.5, 2.0}) {
+                SCOPED_TRACE(testing::Message() << kind << ", light at " << height);
+                const auto settings =
+                    structures::Settings::resolve(row->parameters(), {{"build", std::string(kind)},
+                                                                      {"directional", directional},
+                                                                      {"cull_facing", height > 1},
+                                                                      {"light_x", 0.4},
+                                                                      {"light_y", height}});
+                const auto builder = row->create(tests::device(), settings);
+                std::set<std::uint64_t> fingerprints;
+                for (int i = 0; i < 2; ++i) {
+                    builder->prepare(mesh);
+                    pool::run(tests::device(), builder->job());
+                    EXPECT_THAT(builder->validate(), testing::IsEmpty());
+                    fingerprints.insert(builder->fingerprint());
+                }
+                EXPECT_EQ(fingerprints.size(), 1u);
+                EXPECT_EQ(fingerprints.contains(0), std::string(kind) == "insertion");
+            }
 }
 
 TEST_P(MetricBuild, TakesTheMemoryItSays) {

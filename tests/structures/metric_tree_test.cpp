@@ -133,6 +133,7 @@ TEST(ReferenceTrees, DuplicatesBecomeOneList) {
         const Tree tree = build(clustering, kOutside, split);
         EXPECT_THAT(validate(clustering, tree), IsEmpty());
         EXPECT_EQ(tree.header.bucketed, 100'000u);
+        EXPECT_EQ(tree.header.depth_max, 0u);
         EXPECT_EQ(measure(tree).depth_max, 100'000u);
     }
 }

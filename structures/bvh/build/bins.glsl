@@ -5,8 +5,12 @@
 //
 // Measured on lavapipe: bins in shared memory, two accesses per word and primitive, were far slower.
 
+// Loops over hops of 1, 2, 4 ... lanes run over the logarithm: Mesa before 23 unrolls no loop whose
+// variable is multiplied or divided, and each iteration would have to be told to pool_spend().
+
 layout(constant_id = 25) const uint kLanes = 8;      // in a subgroup
 layout(constant_id = 16) const uint kAxisLanes = 8;  // lanes that hold one axis' bins
+const uint kLaneBits = 7, kAxisLaneBits = 3;         // kLanes <= 128, kAxisLanes <= 8
 const uint kSlots = kBins / kAxisLanes;              // bins of an axis per lane
 layout(constant_id = 17) const uint kSets = 3;       // axes per lane: 3 kAxisLanes / subgroup size, up
 const uint kRows = kSets * kSlots;
@@ -106,10 +110,10 @@ Bin scan_lanes(Bin mine, bool down) {
     const uint lane = gl_SubgroupInvocationID, at = axis_lane();
     const uint before = down ? at : kAxisLanes - 1 - at;
     Bin sum = masked(before > 0 ? 0xffffffffu : 0, bin_from(down ? lane - 1 : lane + 1, mine));
-    [[unroll]] for (uint apart = 1; apart < kAxisLanes; apart *= 2) {
+    [[unroll]] for (uint k = 0; k < kAxisLaneBits; ++k) {
         // The first lane of the axis holds nothing: joining it again changes nothing.
-        const uint hop = min(before, apart);
-        sum = join(sum, bin_from(down ? lane - hop : lane + hop, sum));
+        const uint hop = min(before, 1u << k);
+        if (1u << k < kAxisLanes) sum = join(sum, bin_from(down ? lane - hop : lane + hop, sum));
     }
     return sum;
 }
@@ -140,12 +144,15 @@ void best_splits(uint axes, Bin bins[kRows], out vec3 cost, out uvec3 cut) {
                     best_bin = axis_lane() * kSlots + slot;
                 }
             }
-            [[unroll]] for (uint apart = kAxisLanes / 2; apart > 0; apart /= 2) {
-                const float other = subgroupShuffleXor(best, apart);
-                const uint bin = subgroupShuffleXor(best_bin, apart);
-                const bool take = other < best || (other == best && bin < best_bin);
-                best = take ? other : best;
-                best_bin = take ? bin : best_bin;
+            [[unroll]] for (uint k = 0; k < kAxisLaneBits; ++k) {
+                const uint apart = kAxisLanes >> k + 1;
+                if (apart > 0) {
+                    const float other = subgroupShuffleXor(best, apart);
+                    const uint bin = subgroupShuffleXor(best_bin, apart);
+                    const bool take = other < best || (other == best && bin < best_bin);
+                    best = take ? other : best;
+                    best_bin = take ? bin : best_bin;
+                }
             }
             const uint groups = kLanes / kAxisLanes;
             [[unroll]] for (uint axis = 0; axis < 3; ++axis) {

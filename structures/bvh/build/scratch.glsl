@@ -47,9 +47,12 @@ void fetch_boxes(uint first, out KeyBox boxes[4]) {
 
 /// Sum of the lanes' values up to this one; by shuffles, as lavapipe makes scans and ballots of loops.
 uint sum_to_here(uint mine) {
-    [[unroll]] for (uint apart = 1; apart < kLanes; apart *= 2) {
-        const uint before = subgroupShuffle(mine, gl_SubgroupInvocationID - apart);
-        mine += gl_SubgroupInvocationID < apart ? 0 : before;
+    [[unroll]] for (uint k = 0; k < kLaneBits; ++k) {
+        const uint apart = 1u << k;
+        if (apart < kLanes) {
+            const uint before = subgroupShuffle(mine, gl_SubgroupInvocationID - apart);
+            mine += gl_SubgroupInvocationID < apart ? 0 : before;
+        }
     }
     return mine;
 }

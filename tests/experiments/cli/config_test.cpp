@@ -80,6 +80,17 @@ TEST(Config, UnknownKeysNameLineAndSuggestion) {
     EXPECT_THAT(refusal("[extra]\n" + kText), HasSubstr("t.toml:1: unknown key 'extra'"));
 }
 
+TEST(Config, KeysOfShadowsAreUnknownToBuilds) {
+    const std::string build =
+        "[experiment]\nkind = \"build\"\n[[scene]]\ngenerator = \"city\"\n"
+        "[[method]]\nname = \"fake_tree\"\n";
+    EXPECT_EQ(refusal(build), "accepted");
+    for (const std::string key : {"truth=true", "pictures=false", "reference=fake_tree"}) {
+        EXPECT_THAT(refusal(build, {"experiment." + key}),
+                    HasSubstr("unknown key '" + key.substr(0, key.find('=')) + "'"));
+    }
+}
+
 TEST(Config, WrongTypesNameWhatWasExpected) {
     const std::pair<const char*, const char*> cases[][2] = {
         {{"repeat = 7", "repeat = 7.5"}, {"t.toml:4: ", "expected an integer"}},

@@ -15,14 +15,13 @@ TEST_P(BvhStability, PassesTheSuite) {
     const auto method = tests::make_method("bvh", {{"query", std::string(GetParam())}});
     // The way most used meets most variations.
     const bool usual = GetParam() == std::string("beam");
-    const experiments::config::Stability few{{}, usual ? 3 : 1, 1, {1e-4}};
+    const Selection few{{}, usual ? 3 : 1, 1, {1e-4}};
     for (const StressTest& test : suite())
         for (const Light::Type type : test.light_types())
             for (const Scene& scene : test.build(type))
                 for (const Variation& variation :
                      variations(few, 1, test.most < 1000 ? 0 : test.most)) {
-                    const JudgedScene judged =
-                        judge(vary(scene, variation), variation.keeps_coordinates());
+                    const JudgedScene judged = judge(vary(scene, variation));
                     const Marks marks = tests::answer(*method, judged);
                     EXPECT_TRUE(marks.passed())
                         << test.label() << ' '

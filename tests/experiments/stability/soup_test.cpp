@@ -98,7 +98,7 @@ TEST_F(BvhSoup, AgreesWithTheJudge) {
         const auto seed = *rc::gen::arbitrary<std::uint64_t>();
         const int size = *rc::gen::inRange(1, 120);
         const double scale = *rc::gen::element(1.0, 1e-4, 1e4);
-        const Marks marks = tests::answer(*method, judge(soup(seed, size, scale), true));
+        const Marks marks = tests::answer(*method, judge(soup(seed, size, scale)));
         RC_LOG() << marks.score.false_lit << " false lit, " << marks.score.false_shadowed
                  << " false shadowed of " << marks.score.points - marks.score.ambiguous << '\n';
         if (marks.worst)

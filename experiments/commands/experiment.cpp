@@ -1,9 +1,12 @@
-#include "experiments/measure/run.hpp"
+#include "experiments/commands/experiment.hpp"
 
+#include "experiments/measure/accuracy.hpp"
+#include "experiments/measure/stability_matrix.hpp"
 #include "experiments/report/report.hpp"
-#include "experiments/stability/run.hpp"
 
-namespace experiments::measure {
+namespace experiments::commands {
+
+using namespace measure;
 
 RunOutcome run_experiment(taskpool::gpu::Device& device, const config::Config& config,
                           const Registries& registries, const RunOptions& options,
@@ -18,14 +21,18 @@ RunOutcome run_experiment(taskpool::gpu::Device& device, const config::Config& c
         SamplesFile samples(folder.samples());
         TruthCache cache(options.cache, [&](const std::string& line) { progress.note(line); });
         Session session{device, config, registries, folder, samples, progress, cache};
-        config.stability         ? stability::run_stability(session)
-        : config.kind == "build" ? run_builds(session)
-                                 : run_shadows(session);
-        outcome.failures = session.failures;
+        config.kind == "stability" ? run_stability(session)
+        : config.kind == "build"   ? run_builds(session)
+                                   : run_shadows(session);
+        // From the file: it also holds what earlier sessions of a resumed run have found.
         outcome.results = summarise(read_samples(folder.samples()));
-        write_summary(folder);
+        for (const std::string& line : config.stability ? broken_stability_claims(outcome.results)
+                                                        : broken_claims(outcome.results))
+            session.fail(line);
+        outcome.failures = session.failures;
+        write_summary(folder, outcome.results);
         close_run(folder, outcome.failures.empty() ? 0 : 1, outcome.failures);
-        report::write_report(path);
+        report::write_report(path, outcome.results);
     } catch (const std::exception& error) {
         progress.log_error(error.what());
         // The manifest says how the run ended if the disk still takes it; the first error counts.
@@ -40,4 +47,4 @@ RunOutcome run_experiment(taskpool::gpu::Device& device, const config::Config& c
     return outcome;
 }
 
-}  // namespace experiments::measure
+}  // namespace experiments::commands

@@ -1,4 +1,4 @@
-#include "experiments/stability/matrix.hpp"
+#include "experiments/measure/stability_matrix.hpp"
 
 #include <fmt/format.h>
 
@@ -6,21 +6,10 @@
 
 #include "experiments/measure/session.hpp"
 
-namespace experiments::stability {
+namespace experiments::measure {
 namespace {
 
-using measure::ResultSummary;
-
-double value(const ResultSummary& result, std::string_view metric) {
-    const measure::MetricSummary* summary = result.find(metric);
-    return summary ? summary->statistics.median : 0;
-}
-
-std::string label(const ResultSummary& result) {
-    return result.variant == "default" ? result.method : result.method + " " + result.variant;
-}
-
-/// What went wrong, as far as it did: "5 false lit, 1 exception".
+/// What went wrong, as far as it did: "5 lit, 1 thrown".
 std::string faults(const ResultSummary& result) {
     struct Fault {
         const char *metric, *text;
@@ -29,25 +18,25 @@ std::string faults(const ResultSummary& result) {
     for (const Fault& fault : {Fault{"false_lit", "lit"}, Fault{"false_shadowed", "dark"},
                                Fault{"unexpected", "inexact"}, Fault{"incomplete", "unanswered"},
                                Fault{"exceptions", "thrown"}}) {
-        const double count = value(result, fault.metric);
+        const double count = result.median(fault.metric);
         if (count > 0)
-            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", measure::readable(count, "1"),
-                                fault.text);
+            text +=
+                fmt::format("{}{} {}", text.empty() ? "" : ", ", readable(count, "1"), fault.text);
     }
     return text;
 }
 
 std::string worst_point(const ResultSummary& result) {
     if (!result.find("worst_x")) return {};
-    return fmt::format("({:.9g}, {:.9g}, {:.9g})", value(result, "worst_x"),
-                       value(result, "worst_y"), value(result, "worst_z"));
+    return fmt::format("({:.9g}, {:.9g}, {:.9g})", result.median("worst_x"),
+                       result.median("worst_y"), result.median("worst_z"));
 }
 
 Cell make_cell(const ResultSummary& result) {
-    Cell cell{true, value(result, "stability_passed") == 1};
-    const double instances = value(result, "instances");
+    Cell cell{true, result.median("stability_passed") == 1};
+    const double instances = result.median("instances");
     cell.text = cell.passed ? fmt::format("{}", instances)
-                            : fmt::format("{} of {}: {}", value(result, "instances_failed"),
+                            : fmt::format("{} of {}: {}", result.median("instances_failed"),
                                           instances, faults(result));
     if (!cell.passed) cell.worst = worst_point(result);
     return cell;
@@ -65,16 +54,16 @@ std::size_t index_of(std::vector<std::string>& names, const std::string& name) {
 Matrix make_matrix(std::span<const ResultSummary> results) {
     Matrix matrix;
     for (const ResultSummary& result : results)
-        if (result.method != measure::kSceneRows) {
+        if (result.method != kSceneRows) {
             index_of(matrix.tests, result.scene);
-            index_of(matrix.methods, label(result));
+            index_of(matrix.methods, result.label());
         }
     std::sort(matrix.tests.begin(), matrix.tests.end());
     matrix.cells.resize(matrix.tests.size() * matrix.methods.size());
     for (const ResultSummary& result : results)
-        if (result.method != measure::kSceneRows)
+        if (result.method != kSceneRows)
             matrix.cells[index_of(matrix.tests, result.scene) * matrix.methods.size() +
-                         index_of(matrix.methods, label(result))] = make_cell(result);
+                         index_of(matrix.methods, result.label())] = make_cell(result);
     return matrix;
 }
 
@@ -98,16 +87,16 @@ std::vector<std::vector<std::string>> text_rows(const Matrix& matrix) {
     return rows;
 }
 
-std::vector<std::string> broken_claims(std::span<const ResultSummary> results) {
+std::vector<std::string> broken_stability_claims(std::span<const ResultSummary> results) {
     std::vector<std::string> lines;
     for (const ResultSummary& result : results) {
-        if (value(result, "claims_exact") != 1 || value(result, "stability_passed") == 1) continue;
+        if (result.median("claims_exact") != 1 || result.median("stability_passed") == 1) continue;
         const std::string worst = worst_point(result);
         lines.push_back(fmt::format("{}, {}: claims to be exact, but fails {}{}{}", result.scene,
-                                    label(result), make_cell(result).text,
+                                    result.label(), make_cell(result).text,
                                     worst.empty() ? "" : "; worst at ", worst));
     }
     return lines;
 }
 
-}  // namespace experiments::stability
+}  // namespace experiments::measure

@@ -7,7 +7,7 @@
 
 #include "experiments/measure/summary.hpp"
 
-namespace experiments::stability {
+namespace experiments::measure {
 
 struct Cell {
     bool taken = false;  ///< whether the method has taken the test
@@ -26,12 +26,12 @@ struct Matrix {
     }
 };
 
-Matrix make_matrix(std::span<const measure::ResultSummary> results);
+Matrix make_matrix(std::span<const ResultSummary> results);
 
 /// For a terminal: the header and a row per test and a last one with the number of tests passed.
 std::vector<std::vector<std::string>> text_rows(const Matrix& matrix);
 
 /// A line for every test that a method failed although it claims exactness.
-std::vector<std::string> broken_claims(std::span<const measure::ResultSummary> results);
+std::vector<std::string> broken_stability_claims(std::span<const ResultSummary> results);
 
-}  // namespace experiments::stability
+}  // namespace experiments::measure

@@ -1,25 +1,30 @@
-#include "experiments/stability/run.hpp"
-
+// kind = "stability": every method of the config on every scene of the stress suite, varied.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 
+#include "experiments/measure/session.hpp"
 #include "experiments/stability/judge.hpp"
-#include "experiments/stability/matrix.hpp"
 #include "experiments/stability/suite.hpp"
 #include "experiments/stability/variations.hpp"
 
-namespace experiments::stability {
+namespace experiments::measure {
 namespace {
 
-using measure::Session;
+using stability::JudgedScene;
+using stability::Marks;
+using stability::StressTest;
+using stability::WrongPoint;
+using structures::geometry::Light;
 
 /// What a method did in one test, over all instances: its samples.
 struct Tally {
     int instances = 0, failed = 0, exceptions = 0;
     double points = 0, false_lit = 0, false_shadowed = 0, unexpected = 0, ambiguous = 0;
-    double incomplete = 0, deferred = 0, slowest_ms = 0;
+    double incomplete = 0, slowest_ms = 0;
     std::optional<WrongPoint> worst{};
 
     structures::Samples samples(bool claims_exact) const {
@@ -34,13 +39,11 @@ struct Tally {
                                     {"unexpected", unexpected},
                                     {"ambiguous", ambiguous},
                                     {"incomplete", incomplete},
-                                    {"deferred_points", deferred},
                                     {"slowest_ms", slowest_ms, "ms"}};
         if (worst) {
             list.push_back({"worst_x", worst->position.x});
             list.push_back({"worst_y", worst->position.y});
             list.push_back({"worst_z", worst->position.z});
-            list.push_back({"worst_severity", double(worst->severity)});
         }
         return list;
     }
@@ -52,43 +55,38 @@ struct Contestant {
     const shadows::MethodRow* row;
     std::unique_ptr<shadows::Method> method{};
     bool claims_exact = false;
-    bool broken = false;  ///< cannot even be created
-    Tally tally{};        ///< of the test under way
-
-    std::string label() const { return config->name + " " + config->variant; }
+    bool created = false;  ///< once; whatever is thrown later counts as its failure
+    bool broken = false;   ///< cannot even be created
+    Tally tally{};         ///< of the test under way
 };
-
-double value_of(const structures::Samples& samples, std::string_view metric) {
-    for (const structures::Sample& sample : samples)
-        if (sample.metric == metric) return sample.value;
-    return 0;
-}
 
 class StabilityRun {
   public:
     explicit StabilityRun(Session& session) : session_(session) {
         for (const config::Method& method : session.config.methods)
-            for (const shadows::MethodRow& row : session.registries.methods)
-                if (row.name == method.name) contestants_.push_back({&method, &row});
-        for (const StressTest& test : suite())
-            if (selected(test)) steps_total_ += int(test.light_types().size());
+            contestants_.push_back(
+                {&method, &config::find_row(session.registries.methods, method.name)});
+        const std::vector<int>& selected = session.config.stability->tests;
+        for (const StressTest& test : stability::suite())
+            if (std::find(selected.begin(), selected.end(), test.number) != selected.end())
+                tests_.push_back(&test);
     }
 
+    /// A test takes a step per type of light.
     void run() {
-        for (const StressTest& test : suite()) {
-            if (!selected(test)) continue;
-            session_.attempt(test.label(), [&] { run_test(test); });
+        session_.steps_total = 0;
+        for (const StressTest* test : tests_)
+            session_.steps_total += int(test->light_types().size());
+        int steps = 0;
+        for (const StressTest* test : tests_) {
+            session_.steps_done = steps;
+            session_.attempt(test->label(), [&] { run_test(*test); });
+            steps += int(test->light_types().size());
         }
-        report_failed_claims();
     }
 
   private:
-    bool selected(const StressTest& test) const {
-        const std::vector<int>& tests = session_.config.stability->tests;
-        return std::find(tests.begin(), tests.end(), test.number) != tests.end();
-    }
-
-    measure::Key key(const StressTest& test, const Contestant& contestant) const {
+    Key key(const StressTest& test, const Contestant& contestant) const {
         return {test.label(), contestant.config->name, contestant.config->variant, 0, 0};
     }
 
@@ -98,7 +96,9 @@ class StabilityRun {
         for (Contestant& contestant : contestants_) {
             contestant.tally = {};
             if (contestant.broken || session_.samples.complete(key(test, contestant))) continue;
-            contestant.broken = !session_.attempt(contestant.label(), [&] { create(contestant); });
+            if (!contestant.created)
+                contestant.broken =
+                    !session_.attempt(contestant.config->label(), [&] { create(contestant); });
             if (!contestant.broken) list.push_back(&contestant);
         }
         return list;
@@ -108,24 +108,24 @@ class StabilityRun {
         if (contestant.method) return;
         contestant.method = contestant.row->create(session_.device, contestant.config->settings);
         contestant.claims_exact = contestant.method->claims_exact();
+        contestant.created = true;
     }
 
     void run_test(const StressTest& test) {
         const std::vector<Contestant*> players = contestants(test);
-        const measure::Key facts{test.label(), measure::kSceneRows, "", 0, 0};
+        const Key facts{test.label(), kSceneRows, "", 0, 0};
         double points = 0, instances = 0, triangles = 0;
         for (const Light::Type type : test.light_types()) {
             const char* light = type == Light::Type::point ? "point light" : "directional light";
-            session_.progress.step(fmt::format("{}, {}", test.label(), light), steps_done_++,
-                                   steps_total_);
+            session_.step(fmt::format("{}, {}", test.label(), light));
             if (players.empty() && session_.samples.complete(facts)) continue;
-            for (const Scene& scene : test.build(type)) {
-                for (const Variation& variation :
-                     variations(*session_.config.stability, session_.config.seed, test.most)) {
+            for (const stability::Scene& scene : test.build(type)) {
+                for (const stability::Variation& variation : stability::variations(
+                         *session_.config.stability, session_.config.seed, test.most)) {
                     const std::string place =
-                        fmt::format("{}, {}{}{}, {}", test.label(), light,
-                                    scene.name.empty() ? "" : ", ", scene.name, variation.label());
-                    run_instance(place, vary(scene, variation), variation, players);
+                        fmt::format("{}{}{}, {}", light, scene.name.empty() ? "" : ", ", scene.name,
+                                    variation.label());
+                    run_instance(test, place, vary(scene, variation), players);
                     ++instances;
                     points += double(scene.points.size());
                 }
@@ -145,54 +145,54 @@ class StabilityRun {
             facts, {{"instances", instances}, {"points", points}, {"triangles", triangles}});
     }
 
-    void run_instance(const std::string& place, const Scene& scene, const Variation& variation,
-                      const std::vector<Contestant*>& players) {
+    /// `place` tells the instances of a test apart.
+    void run_instance(const StressTest& test, const std::string& place,
+                      const stability::Scene& scene, const std::vector<Contestant*>& players) {
         std::optional<JudgedScene> judged;
         try {
-            judged = judge(scene, variation.keeps_coordinates());
+            judged = judge(scene);
         } catch (const std::exception& error) {
             throw std::runtime_error(fmt::format("{}: {}", place, error.what()));
         }
         const shadows::Points points(session_.device, judged->image.arrays, judged->image.width,
                                      judged->image.height);
         for (Contestant* player : players) {
-            Tally& tally = player->tally;
-            ++tally.instances;
+            ++player->tally.instances;
             std::string why;
             try {
                 create(*player);
                 why = answer(*player, *judged, points);
             } catch (const taskpool::gpu::Error& error) {
                 if (error.result == VK_ERROR_DEVICE_LOST) throw;
-                why = error.what();
+                why = give_up(*player, error);
             } catch (const std::exception& error) {
-                why = error.what();
+                why = give_up(*player, error);
             }
             if (why.empty()) continue;
             // The first of a test is told in full; the rest is in the counts.
-            if (tally.failed++ == 0)
-                session_.progress.note(
-                    fmt::format("{}: {} fails: {}", place, player->label(), why));
+            if (player->tally.failed++ == 0)
+                session_.progress.note(fmt::format("{}, {}: {} fails: {}", test.label(), place,
+                                                   player->config->label(), why));
         }
     }
 
+    static std::string give_up(Contestant& player, const std::exception& error) {
+        ++player.tally.exceptions;
+        player.method.reset();  // who knows in what state
+        return fmt::format("error: {}", error.what());
+    }
+
     /// Lets the method answer; why that is wrong, or nothing.
-    std::string answer(Contestant& player, const JudgedScene& judged,
-                       const shadows::Points& points) {
+    static std::string answer(Contestant& player, const JudgedScene& judged,
+                              const shadows::Points& points) {
         using Clock = std::chrono::steady_clock;
         Tally& tally = player.tally;
         shadows::Visibility visible;
-        structures::Samples asked;
         const Clock::time_point begin = Clock::now();
-        try {
-            player.method->prepare(judged.scene.mesh);
-            player.method->build(judged.scene.light);
-            asked = player.method->query(points, visible);
-        } catch (...) {
-            ++tally.exceptions;
-            player.method.reset();  // who knows in what state
-            throw;
-        }
+        player.method->prepare(judged.scene.mesh);
+        player.method->expect(points);
+        player.method->build(judged.scene.light);
+        const structures::Samples asked = player.method->query(points, visible);
         const std::chrono::duration<double, std::milli> time = Clock::now() - begin;
         tally.slowest_ms = std::max(tally.slowest_ms, time.count());
         const Marks marks = judged.mark(visible);
@@ -203,7 +203,6 @@ class StabilityRun {
         tally.ambiguous += marks.score.ambiguous;
         tally.unexpected += marks.unexpected;
         tally.incomplete += incomplete;
-        tally.deferred += value_of(asked, "deferred_points");
         if (marks.worst && (!tally.worst || marks.worst->severity > tally.worst->severity))
             tally.worst = marks.worst;
         if (incomplete > 0) return fmt::format("{} points left without an answer", incomplete);
@@ -215,22 +214,13 @@ class StabilityRun {
                            worst.called_lit ? "lit" : "shadowed");
     }
 
-    /// From the file, so that a resumed run reports what the first part has found.
-    void report_failed_claims() {
-        const auto results = measure::summarise(measure::read_samples(session_.folder.samples()));
-        for (const std::string& line : broken_claims(results)) {
-            session_.failures.push_back(line);
-            session_.progress.error(line);
-        }
-    }
-
     Session& session_;
     std::vector<Contestant> contestants_;
-    int steps_total_ = 0, steps_done_ = 0;
+    std::vector<const StressTest*> tests_;
 };
 
 }  // namespace
 
 void run_stability(Session& session) { StabilityRun(session).run(); }
 
-}  // namespace experiments::stability
+}  // namespace experiments::measure

@@ -4,7 +4,7 @@
 #include "experiments/measure/session.hpp"
 #include "experiments/measure/summary.hpp"
 
-namespace experiments::measure {
+namespace experiments::commands {
 
 struct RunOptions {
     std::filesystem::path out{};  ///< empty: a fresh folder below runs/
@@ -15,14 +15,14 @@ struct RunOptions {
 
 struct RunOutcome {
     std::filesystem::path folder;
-    std::vector<ResultSummary> results;
+    std::vector<measure::ResultSummary> results;
     std::vector<std::string> failures;  ///< empty: all went well
 };
 
 /// Throws ConfigError before any work, OutputError or gpu::Error when the run cannot go on; what
 /// was measured until then is in the folder.
 RunOutcome run_experiment(taskpool::gpu::Device& device, const config::Config& config,
-                          const Registries& registries, const RunOptions& options,
-                          Progress& progress);
+                          const measure::Registries& registries, const RunOptions& options,
+                          measure::Progress& progress);
 
-}  // namespace experiments::measure
+}  // namespace experiments::commands
