@@ -90,7 +90,7 @@ class MetricTreeBuilder final : public Builder {
     }
     /// 0 for insertion, whose trees depend on who came first.
     std::uint64_t fingerprint() override {
-        if (!host_) return 0;
+        if (!host_ && build_.config().builder == BuilderKind::insertion) return 0;
         Hash hash;
         const Tree tree = build_.read_back();
         hash.add(tree.header);

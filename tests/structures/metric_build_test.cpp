@@ -1,7 +1,9 @@
-// Metric trees built by insertion: valid whatever the order, the pool, the light and the clusters.
+// Metric trees built on the device, by every builder: valid whatever the order, the pool, the light
+// and the clusters.
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstring>
 #include <numbers>
 #include <set>
 
@@ -34,7 +36,7 @@ tests::TriangleMesh mesh_around(const Clustering& clustering) {
     return mesh;
 }
 
-class MetricInsertion : public tests::GpuTest {
+class MetricBuild : public tests::GpuTest, public testing::WithParamInterface<BuilderKind> {
   protected:
     static Tree run(MetricTreeBuild& build, const Clustering& clustering, const Light& light) {
         build.prepare(clustering, mesh_around(clustering));
@@ -42,10 +44,16 @@ class MetricInsertion : public tests::GpuTest {
         pool::run(tests::device(), build);
         return build.read_back();
     }
-    static Tree build(const Clustering& clustering, const Light& light,
-                      const BuildConfig& config = {}) {
+    static Tree build(const Clustering& clustering, const Light& light, BuildConfig config = {}) {
+        config.builder = GetParam();
         MetricTreeBuild build(tests::device(), config);
         return run(build, clustering, light);
+    }
+    static bool same_bits(const Tree& a, const Tree& b) {
+        return std::memcmp(&a.header, &b.header, sizeof(MetricHeader)) == 0 &&
+               a.nodes.size() == b.nodes.size() &&
+               std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(MetricNode)) ==
+                   0;
     }
     static void expect_valid(const Clustering& clustering, const Tree& tree) {
         EXPECT_THAT(validate(clustering, tree), testing::IsEmpty());
@@ -56,9 +64,9 @@ class MetricInsertion : public tests::GpuTest {
     }
 };
 
-TEST_F(MetricInsertion, IsValidForAllSizesAndLights) {
+TEST_P(MetricBuild, IsValidForAllSizesAndLights) {
     const std::uint32_t lanes = tests::device().subgroup_size();
-    MetricTreeBuild build(tests::device(), {});
+    MetricTreeBuild build(tests::device(), {.builder = GetParam()});
     for (const std::uint32_t count :
          std::set<std::uint32_t>{0, 1, 2, lanes - 1, lanes, lanes + 1, 1000})
         for (const bool capsules : {false, true})
@@ -70,16 +78,16 @@ TEST_F(MetricInsertion, IsValidForAllSizesAndLights) {
             }
 }
 
-TEST_F(MetricInsertion, IsValidForManyClusters) {
+TEST_P(MetricBuild, IsValidForManyClusters) {
     const Clustering clustering = tests::random_clusters(100'000, true, 11);
     for (const Light& light : {kOutside, kInside, kSun}) {
         const Tree tree = build(clustering, light);
         expect_valid(clustering, tree);
-        EXPECT_EQ(tree.header.bucketed, 0u);
+        EXPECT_LE(tree.header.bucketed, GetParam() == BuilderKind::insertion ? 0u : 20'000u);
     }
 }
 
-TEST_F(MetricInsertion, IsValidInAnyOrderAndPool) {
+TEST_P(MetricBuild, IsValidInAnyOrderAndPool) {
     const Clustering clustering = tests::random_clusters(3000, true, 5);
     const auto expect_found = [&](const BuildConfig& config) {
         for (const Light& light : {kInside, kSun})
@@ -96,12 +104,12 @@ TEST_F(MetricInsertion, IsValidInAnyOrderAndPool) {
             config.pool.policy = policy;
             config.pool.subgroups = workgroups;
             config.pool.slots = 64;
-            config.pool.iteration_budget = 40'000;
+            config.pool.iteration_budget = 60'000;
             expect_found(config);
         }
 }
 
-TEST_F(MetricInsertion, IsValidAtAnyScaleAndPlace) {
+TEST_P(MetricBuild, IsValidAtAnyScaleAndPlace) {
     for (const auto& [scale, shift] : {std::pair{1e-4f, 0.0f},
                                        {1e4f, 0.0f},
                                        {1e-30f, 0.0f},
@@ -122,7 +130,25 @@ TEST_F(MetricInsertion, IsValidAtAnyScaleAndPlace) {
     }
 }
 
-TEST_F(MetricInsertion, GivesAnotherTreeForAnotherSeed) {
+/// Insertion depends on who comes first.
+TEST_P(MetricBuild, IsTheSameWhateverThePool) {
+    if (GetParam() == BuilderKind::insertion) GTEST_SKIP();
+    const Clustering clustering = tests::random_clusters(20'000, true, 17);
+    for (const Light& light : {kOutside, kSun}) {
+        const Tree first = build(clustering, light);
+        EXPECT_TRUE(same_bits(first, build(clustering, light)));
+        for (const std::uint32_t workgroups : {1u, 5u, 16u}) {
+            BuildConfig config;
+            config.pool.policy = workgroups == 5 ? pool::Policy::scan : pool::Policy::bitmap;
+            config.pool.subgroups = workgroups;
+            config.pool.slots = 64;
+            config.pool.iteration_budget = 60'000;
+            EXPECT_TRUE(same_bits(first, build(clustering, light, config))) << workgroups;
+        }
+    }
+}
+
+TEST_P(MetricBuild, GivesAnotherTreeForAnotherSeed) {
     const Clustering clustering = tests::random_clusters(1000, false, 5);
     std::set<std::uint32_t> roots;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -133,7 +159,7 @@ TEST_F(MetricInsertion, GivesAnotherTreeForAnotherSeed) {
     EXPECT_GT(roots.size(), 1u);
 }
 
-TEST_F(MetricInsertion, BoundsPathsWhereAllOverlap) {
+TEST_P(MetricBuild, BoundsPathsWhereAllOverlap) {
     // Copies of one cluster; clusters in a row from the light; spokes that all cross.
     Clustering copies, row, spokes;
     for (int i = 0; i < 10'000; ++i)
@@ -161,7 +187,7 @@ TEST_F(MetricInsertion, BoundsPathsWhereAllOverlap) {
     EXPECT_GE(tree.header.bucketed, 100'000 - kMaxDepth);
 }
 
-TEST_F(MetricInsertion, ListsWhatIsAroundTheLight) {
+TEST_P(MetricBuild, ListsWhatIsAroundTheLight) {
     const Light light{Light::Type::point, {1, 2, 3}};
     const glm::dvec3 at(light.vector);
     Clustering clustering = tests::random_clusters(500, true, 21);
@@ -189,7 +215,7 @@ TEST_F(MetricInsertion, ListsWhatIsAroundTheLight) {
     }
 }
 
-TEST_F(MetricInsertion, LeavesOutWhatFacesAway) {
+TEST_P(MetricBuild, LeavesOutWhatFacesAway) {
     Clustering clustering = tests::random_clusters(4000, true, 31);
     Random random(31);
     for (Cluster& cluster : clustering.clusters) {
@@ -204,10 +230,10 @@ TEST_F(MetricInsertion, LeavesOutWhatFacesAway) {
     }
 }
 
-TEST_F(MetricInsertion, LoadsTreesBuiltElsewhere) {
+TEST_P(MetricBuild, LoadsTreesBuiltElsewhere) {
     Clustering clustering = tests::random_clusters(700, true, 41);
     const tests::TriangleMesh mesh = mesh_around(clustering);
-    MetricTreeBuild target(tests::device(), {});
+    MetricTreeBuild target(tests::device(), {.builder = GetParam()});
     target.prepare(clustering, mesh);
     for (const Light& light : {kOutside, kInside, kSun}) {
         const Tree tree = build_reference(clustering, mesh.bounds(), light);
@@ -246,7 +272,7 @@ std::set<std::uint32_t> met_by_walk(const Tree& tree, const glm::dvec3& point) {
     return met;
 }
 
-TEST_F(MetricInsertion, QueriesMeetWhatBruteForceMeets) {
+TEST_P(MetricBuild, QueriesMeetWhatBruteForceMeets) {
     const Clustering clustering = tests::random_clusters(2000, true, 51);
     for (const Light& light : {kOutside, kInside, kSun}) {
         const Tree tree = build(clustering, light);
@@ -276,12 +302,14 @@ TEST_F(MetricInsertion, QueriesMeetWhatBruteForceMeets) {
     }
 }
 
-TEST_F(MetricInsertion, IsARowWithItsCpuBuilders) {
+using MetricRow = tests::GpuTest;
+
+TEST_F(MetricRow, HasEveryBuilder) {
     const auto row =
         std::ranges::find(structures::registry(), "metric_tree", &structures::StructureRow::name);
     ASSERT_NE(row, structures::registry().end());
     const tests::TriangleMesh mesh = tests::sphere(40, 60, {1, -2, 3}, 5);
-    for (const char* kind : {"insertion", "cpu_median", "cpu_cost"})
+    for (const char* kind : {"insertion", "median", "cost", "cpu_median", "cpu_cost"})
         for (const bool directional : {false, true})
             for (const double height : {0.5, 2.0}) {
                 SCOPED_TRACE(testing::Message() << kind << ", light at " << height);
@@ -304,12 +332,22 @@ TEST_F(MetricInsertion, IsARowWithItsCpuBuilders) {
             }
 }
 
-TEST_F(MetricInsertion, TakesTheMemoryItSays) {
+TEST_P(MetricBuild, TakesTheMemoryItSays) {
     const Clustering clustering = tests::random_clusters(5000, true, 3);
     const std::uint64_t before = tests::device().allocated_bytes();
-    MetricTreeBuild target(tests::device(), {});
+    MetricTreeBuild target(tests::device(), {.builder = GetParam()});
     run(target, clustering, kOutside);
     EXPECT_LE(tests::device().allocated_bytes() - before, target.required_bytes(5000, 0) + 1024);
 }
+
+std::string name_of(const testing::TestParamInfo<BuilderKind>& info) {
+    constexpr const char* kNames[]{"insertion", "median", "cost"};
+    return kNames[static_cast<int>(info.param)];
+}
+
+INSTANTIATE_TEST_SUITE_P(Builders, MetricBuild,
+                         testing::Values(BuilderKind::insertion, BuilderKind::median,
+                                         BuilderKind::cost),
+                         name_of);
 
 }  // namespace
