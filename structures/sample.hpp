@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace structures {
@@ -14,5 +15,12 @@ struct Sample {
     std::string unit = "1";
 };
 using Samples = std::vector<Sample>;
+
+/// The value of the first sample of `metric`, or 0 if there is none.
+inline double value_of(const Samples& samples, std::string_view metric) {
+    for (const Sample& sample : samples)
+        if (sample.metric == metric) return sample.value;
+    return 0;
+}
 
 }  // namespace structures

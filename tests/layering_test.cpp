@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 #include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,28 @@ TEST(Layering, IncludesPointLeft) {
                     << " or a layer on its left";
             }
     EXPECT_GT(seen, 100u);
+}
+
+// The folders of the program build on one another, too.
+TEST(Layering, FoldersOfTheProgramFormNoCircle) {
+    const std::regex include("^\\s*#include \"experiments/([^\"/]+)/");
+    std::map<std::string, std::set<std::string>> needed;
+    for (const SourceFile& file : sources_below("experiments")) {
+        const std::string folder = file.path.substr(std::string("experiments/").size());
+        const std::size_t slash = folder.find('/');
+        if (slash == std::string::npos) continue;  // main.cpp
+        auto& others = needed[folder.substr(0, slash)];
+        for (const std::string& line : file.lines)
+            if (std::smatch match; std::regex_search(line, match, include)) others.insert(match[1]);
+        others.erase(folder.substr(0, slash));
+    }
+    // Whoever needs nobody that is left goes, until nobody can.
+    for (bool going = true; going;) {
+        going = std::erase_if(needed, [](const auto& one) { return one.second.empty(); }) > 0;
+        for (auto& [folder, others] : needed)
+            std::erase_if(others, [&](const std::string& o) { return !needed.contains(o); });
+    }
+    EXPECT_THAT(needed, testing::IsEmpty()) << "these folders need one another";
 }
 
 TEST(Layering, LibrariesNeitherPrintNorOpenFilesNorReadTheEnvironment) {

@@ -1,13 +1,12 @@
 // grove run
-#include "experiments/measure/run.hpp"
-
 #include <fmt/format.h>
 
 #include <fstream>
 #include <iterator>
 
+#include "experiments/commands/experiment.hpp"
 #include "experiments/commands/program.hpp"
-#include "experiments/stability/matrix.hpp"
+#include "experiments/measure/stability_matrix.hpp"
 
 namespace experiments::commands {
 namespace {
@@ -48,8 +47,7 @@ void check_device_index(int index) {
 
 std::string results_table(const config::Config& config,
                           const std::vector<measure::ResultSummary>& results) {
-    if (config.stability)
-        return text_table(stability::text_rows(stability::make_matrix(results)), 100);
+    if (config.stability) return text_table(measure::text_rows(measure::make_matrix(results)), 100);
     std::vector<std::vector<std::string>> rows{{"scene", "method", "variant"}};
     std::vector<const char*> columns;
     for (const char* name : kColumns)
@@ -101,7 +99,7 @@ int run(const RunRequest& request, const measure::Registries& registries) {
     for (const config::Config& config : configs) {
         measure::Progress progress(request.quiet ? measure::Progress::Mode::quiet
                                                  : measure::Progress::Mode::automatic);
-        const measure::RunOutcome outcome = measure::run_experiment(
+        const RunOutcome outcome = run_experiment(
             *device, config, registries,
             {folder_of(request, config), request.resume, request.command_line, cache}, progress);
         if (!outcome.failures.empty()) code = 1;

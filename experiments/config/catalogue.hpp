@@ -4,7 +4,9 @@
 #pragma once
 
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "shadows/method.hpp"
@@ -28,6 +30,14 @@ struct Catalogue {
 /// The entry of that name, or nullptr.
 const Entry* find(const Entries& entries, std::string_view name);
 std::vector<std::string> names(const Entries& entries);
+
+/// The row that a config names; it was checked against the same rows.
+template <typename Row>
+const Row& find_row(std::span<const Row> rows, std::string_view name) {
+    for (const Row& row : rows)
+        if (row.name == name) return row;
+    throw std::logic_error("'" + std::string(name) + "' has left the registry");
+}
 
 Catalogue make_catalogue(std::span<const structures::StructureRow> structures,
                          std::span<const shadows::MethodRow> methods);

@@ -15,6 +15,7 @@
 #include "experiments/config/catalogue.hpp"
 #include "experiments/config/node.hpp"
 #include "experiments/config/stability.hpp"
+#include "experiments/scenes/path.hpp"
 #include "experiments/scenes/views_file.hpp"
 #include "structures/geometry/light.hpp"
 
@@ -27,15 +28,22 @@ struct Scene {
     structures::Settings settings{};  ///< of the generator
     std::optional<scenes::Camera> camera{};  ///< absent: the scene's own view
     std::optional<structures::geometry::Light> light{};
-    std::filesystem::path views{};  ///< file of named views, or empty
-    std::string view{};             ///< the view of that file
+    std::filesystem::path views{};       ///< file of named views, or empty
+    std::string view{};                  ///< the view of that file
+    std::optional<scenes::Path> path{};  ///< kind "shadows": goes before camera, light and view
+    bool all_pictures = false;           ///< of every frame, not the first alone
     std::uint32_t width = 1280, height = 720;
+
+    int frames() const { return path ? path->frames : 1; }
 };
 
 struct Method {
     std::string name;     ///< of the registry
     std::string variant;  ///< unique together with `name`
     structures::Settings settings{};
+
+    /// "bvh query=lane", also "bvh default".
+    std::string label() const { return name + " " + variant; }
 };
 
 struct Config {
@@ -47,10 +55,10 @@ struct Config {
     std::int64_t seed = 1;
     bool truth = true;          ///< kind "shadows": judge every answer by shadows/truth
     bool pictures = true;       ///< kind "shadows": draw every answer
-    std::size_t reference = 0;  ///< index of the method whose answer the others are compared with
+    std::size_t reference = 0;  ///< kind "shadows": index of the method to compare answers with
     std::vector<Scene> scenes;  ///< none for kind "stability", which has its own
     std::vector<Method> methods;
-    std::optional<Stability> stability{};  ///< for kind "stability" alone
+    std::optional<stability::Selection> stability{};  ///< for kind "stability" alone
 };
 
 /// Kinds of experiment that this version can run.

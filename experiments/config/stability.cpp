@@ -41,32 +41,32 @@ double read_scale(const Node& node) {
 
 }  // namespace
 
-Stability read_stability(Table& table) {
-    Stability config;
+stability::Selection read_stability(Table& table) {
+    stability::Selection selection;
     if (const std::vector<Node>* tests = list_of(table, "tests")) {
-        for (const Node& node : *tests) config.tests.push_back(read_test(node));
+        for (const Node& node : *tests) selection.tests.push_back(read_test(node));
         if (tests->empty()) fail(*table.find("tests"), "'tests' is empty; leave it out for all");
-        std::sort(config.tests.begin(), config.tests.end());
-        config.tests.erase(std::unique(config.tests.begin(), config.tests.end()),
-                           config.tests.end());
+        std::sort(selection.tests.begin(), selection.tests.end());
+        selection.tests.erase(std::unique(selection.tests.begin(), selection.tests.end()),
+                              selection.tests.end());
     } else {
         for (const stability::StressTest& test : stability::suite())
-            config.tests.push_back(test.number);
+            selection.tests.push_back(test.number);
     }
-    config.transforms = int(table.integer("transforms", 0, 1000).value_or(config.transforms));
-    config.orders = int(table.integer("orders", 0, 1000).value_or(config.orders));
+    selection.transforms = int(table.integer("transforms", 0, 1000).value_or(selection.transforms));
+    selection.orders = int(table.integer("orders", 0, 1000).value_or(selection.orders));
     if (const std::vector<Node>* scales = list_of(table, "scales")) {
-        config.scales.clear();
-        for (const Node& node : *scales) config.scales.push_back(read_scale(node));
+        selection.scales.clear();
+        for (const Node& node : *scales) selection.scales.push_back(read_scale(node));
     }
-    return config;
+    return selection;
 }
 
-nlohmann::json to_json(const Stability& stability) {
-    return {{"tests", stability.tests},
-            {"transforms", stability.transforms},
-            {"orders", stability.orders},
-            {"scales", stability.scales}};
+nlohmann::json to_json(const stability::Selection& selection) {
+    return {{"tests", selection.tests},
+            {"transforms", selection.transforms},
+            {"orders", selection.orders},
+            {"scales", selection.scales}};
 }
 
 }  // namespace experiments::config

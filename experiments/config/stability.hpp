@@ -2,22 +2,15 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <vector>
 
 #include "experiments/config/table.hpp"
+#include "experiments/stability/variations.hpp"
 
 namespace experiments::config {
 
-struct Stability {
-    std::vector<int> tests{};  ///< numbers, ascending
-    int transforms = 10;       ///< random rigid transforms of each scene
-    int orders = 10;           ///< random orders of its triangles
-    std::vector<double> scales{1e-4, 1e-2, 1e2, 1e4};
-};
-
 /// Reads `tests`, `transforms`, `orders` and `scales`, all optional.
-Stability read_stability(Table& table);
+stability::Selection read_stability(Table& table);
 
-nlohmann::json to_json(const Stability& stability);
+nlohmann::json to_json(const stability::Selection& selection);
 
 }  // namespace experiments::config

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "experiments/measure/summary.hpp"
-
 namespace experiments::measure {
 
 using shadows::truth::Score;
@@ -61,22 +59,25 @@ structures::Samples Judgement::effort() const {
     return {{"truth_ms", verdicts_.effort.milliseconds, "ms"},
             {"truth_filtered", double(verdicts_.effort.filtered)},
             {"truth_exact", double(verdicts_.effort.exact)},
+            {"truth_candidates", double(verdicts_.effort.candidates)},
             {"truth_cached", double(cached_)}};
 }
 
-void check_claims(Session& session) {
+std::vector<std::string> broken_claims(std::span<const ResultSummary> results) {
+    std::vector<std::string> lines;
     const auto worst = [](const ResultSummary& result, const char* metric) {
         const MetricSummary* summary = result.find(metric);
         return summary ? summary->statistics.max : 0;
     };
-    for (const ResultSummary& result : summarise(read_samples(session.folder.samples()))) {
+    for (const ResultSummary& result : results) {
         const double lit = worst(result, "false_lit"), dark = worst(result, "false_shadowed");
         if (worst(result, "claims_exact") == 0 || lit + dark == 0) continue;
-        session.fail(
-            fmt::format("{}, {} {}: claims to be exact, but answers {} points falsely lit "
+        lines.push_back(
+            fmt::format("{}, {}: claims to be exact, but answers {} points falsely lit "
                         "and {} falsely shadowed outside the rounding band",
-                        result.scene, result.method, result.variant, lit, dark));
+                        result.scene, result.label(), lit, dark));
     }
+    return lines;
 }
 
 }  // namespace experiments::measure

@@ -5,11 +5,13 @@
 //     Samples samples = judgement.score(visible);       // false_lit, false_shadowed, ...
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "experiments/measure/scene_input.hpp"
 #include "experiments/measure/session.hpp"
+#include "experiments/measure/summary.hpp"
 #include "shadows/truth/score.hpp"
 
 namespace experiments::measure {
@@ -34,8 +36,8 @@ class Judgement {
     bool cached_ = false;
 };
 
-/// Makes a failure of the run of every method that claims to be exact and, in any repetition
-/// recorded so far, answered a point outside the rounding band wrongly.
-void check_claims(Session& session);
+/// A line for every method that claims to be exact and, in any repetition, answered a point outside
+/// the rounding band wrongly.
+std::vector<std::string> broken_claims(std::span<const ResultSummary> results);
 
 }  // namespace experiments::measure

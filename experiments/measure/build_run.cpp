@@ -14,19 +14,12 @@ struct Contestant {
     const config::Method* config;
     std::unique_ptr<structures::Builder> builder{};  ///< none once it has failed
     std::uint64_t own_bytes = 0;                     ///< device memory taken before the build
-
-    std::string label() const { return config->name + " " + config->variant; }
 };
-
-const structures::StructureRow& find_row(const Registries& registries, const std::string& name) {
-    for (const structures::StructureRow& row : registries.structures)
-        if (row.name == name) return row;
-    throw std::logic_error("structure '" + name + "' has left the registry");
-}
 
 void create(Session& session, Contestant& contestant, const SceneInput& input) {
     const std::uint64_t before = session.device.allocated_bytes();
-    const structures::StructureRow& row = find_row(session.registries, contestant.config->name);
+    const structures::StructureRow& row =
+        config::find_row(session.registries.structures, contestant.config->name);
     contestant.builder = row.create(session.device, contestant.config->settings);
     contestant.builder->prepare(input.mesh);
     contestant.own_bytes = session.device.allocated_bytes() - before;
@@ -76,7 +69,7 @@ void run_scene(Session& session, const config::Scene& scene) {
     const SceneInput input = load_scene(scene);
     std::vector<Contestant> contestants;
     const std::size_t failures = session.failures.size();
-    const auto place = [&](const Contestant& c) { return scene.name + ", " + c.label(); };
+    const auto place = [&](const Contestant& c) { return scene.name + ", " + c.config->label(); };
 
     for (const config::Method& method : session.config.methods) {
         Contestant& contestant = contestants.emplace_back(&method);
@@ -86,7 +79,7 @@ void run_scene(Session& session, const config::Scene& scene) {
     for (int i = -session.config.warmup; i < session.config.repeat; ++i) {
         for (Contestant& contestant : contestants) {
             const Key key{scene.name, contestant.config->name, contestant.config->variant, 0, i};
-            session.step(fmt::format("{}  {}  {}", scene.name, contestant.label(),
+            session.step(fmt::format("{}  {}  {}", scene.name, contestant.config->label(),
                                      i < 0 ? "warm-up" : fmt::format("#{}", i + 1)));
             if (!contestant.builder || session.samples.complete(key)) continue;
             const bool done = session.attempt(place(contestant), [&] {
@@ -112,13 +105,7 @@ void run_scene(Session& session, const config::Scene& scene) {
 }  // namespace
 
 void run_builds(Session& session) {
-    const int steps = session.steps_total() / int(session.config.scenes.size());
-    for (std::size_t i = 0; i < session.config.scenes.size(); ++i) {
-        const config::Scene& scene = session.config.scenes[i];
-        session.steps_done = int(i) * steps;
-        if (session.samples.complete({scene.name, kSceneRows, "", 0, 0})) continue;
-        session.attempt(scene.name, [&] { run_scene(session, scene); });
-    }
+    session.attempt_scenes([&](const config::Scene& scene) { run_scene(session, scene); });
 }
 
 }  // namespace experiments::measure

@@ -11,7 +11,6 @@
 #include "experiments/image/image.hpp"
 #include "experiments/measure/digest.hpp"
 #include "experiments/measure/provenance.hpp"
-#include "experiments/measure/summary.hpp"
 
 namespace experiments::measure {
 namespace {
@@ -149,11 +148,8 @@ void close_run(RunFolder& folder, int exit_code, const std::vector<std::string>&
     write_text(folder.path / "manifest.json", folder.manifest.dump(2) + "\n");
 }
 
-nlohmann::json write_summary(const RunFolder& folder) {
-    const auto results = summarise(read_samples(folder.samples()));
-    nlohmann::json json = measure::to_json(results);
-    write_text(folder.path / "summary.json", json.dump(1) + "\n");
-    return json;
+void write_summary(const RunFolder& folder, std::span<const ResultSummary> results) {
+    write_text(folder.path / "summary.json", measure::to_json(results).dump(1) + "\n");
 }
 
 }  // namespace experiments::measure

@@ -3,10 +3,11 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
 #include "experiments/config/config.hpp"
-#include "experiments/measure/samples_file.hpp"
+#include "experiments/measure/summary.hpp"
 #include "taskpool/gpu/device_list.hpp"
 
 namespace experiments::measure {
@@ -40,7 +41,7 @@ RunFolder open_run(const std::filesystem::path& path, bool resume, const config:
 /// Records the end of this session in the manifest and writes it.
 void close_run(RunFolder& folder, int exit_code, const std::vector<std::string>& failures);
 
-/// Writes summary.json from samples.csv and returns it.
-nlohmann::json write_summary(const RunFolder& folder);
+/// Writes summary.json.
+void write_summary(const RunFolder& folder, std::span<const ResultSummary> results);
 
 }  // namespace experiments::measure

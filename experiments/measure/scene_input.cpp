@@ -13,13 +13,11 @@ SceneInput load_scene(const config::Scene& scene) {
         input.report = loaded.report;
         view = scenes::default_view(input.mesh.bounds());
     } else {
-        for (const scenes::GeneratorRow& row : scenes::generators()) {
-            if (row.name != scene.generator) continue;
-            scenes::GeneratedScene generated = row.generate(scene.settings);
-            input.mesh = std::move(generated.mesh);
-            input.report = scenes::count(input.mesh);
-            view = {generated.camera, generated.light};
-        }
+        scenes::GeneratedScene generated =
+            config::find_row(scenes::generators(), scene.generator).generate(scene.settings);
+        input.mesh = std::move(generated.mesh);
+        input.report = scenes::count(input.mesh);
+        view = {generated.camera, generated.light};
     }
     input.camera = scene.camera.value_or(view.camera);
     input.light = scene.light.value_or(view.light);

@@ -25,6 +25,19 @@ bool Session::attempt(const std::string& place, const std::function<void()>& wor
     return false;
 }
 
+void Session::attempt_scenes(const std::function<void(const config::Scene&)>& work) {
+    steps_total = 0;
+    for (const config::Scene& scene : config.scenes) steps_total += steps_of(scene);
+    int steps = 0;
+    for (const config::Scene& scene : config.scenes) {
+        steps_done = steps;
+        steps += steps_of(scene);
+        // What fails in a frame stays out of the later ones: the last says that all are complete.
+        if (!samples.complete({scene.name, kSceneRows, "", scene.frames() - 1, 0}))
+            attempt(scene.name, [&] { work(scene); });
+    }
+}
+
 void Session::fail(const std::string& message) {
     failures.push_back(message);
     progress.error(message);

@@ -38,6 +38,15 @@ const MetricSummary* ResultSummary::find(std::string_view metric) const {
     return nullptr;
 }
 
+double ResultSummary::median(std::string_view metric) const {
+    const MetricSummary* summary = find(metric);
+    return summary ? summary->statistics.median : 0;
+}
+
+std::string ResultSummary::label() const {
+    return variant == "default" ? method : method + " " + variant;
+}
+
 std::vector<ResultSummary> summarise(std::span<const Row> rows) {
     std::vector<ResultSummary> results;
     std::vector<std::vector<std::vector<double>>> values;  // per result, per metric

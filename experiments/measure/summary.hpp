@@ -20,6 +20,10 @@ struct ResultSummary {
 
     /// The metric of that name, or nullptr.
     const MetricSummary* find(std::string_view metric) const;
+    /// The metric's median, 0 if it was not measured.
+    double median(std::string_view metric) const;
+    /// "bvh query=lane"; "bvh" for variant "default".
+    std::string label() const;
 };
 
 /// Groups `rows` in order of first appearance; repetitions and frames are pooled.

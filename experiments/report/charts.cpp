@@ -14,14 +14,8 @@ namespace {
 // shows it at about this many pixels.
 constexpr double kWidth = 400, kMargin = 14, kTitle = 32, kRow = 44, kBarHeight = 14;
 
-/// `text` cut to what fits beside a value, at the end of a UTF-8 character.
-std::string shortened(const std::string& text) {
-    constexpr std::size_t kLongest = 44;
-    if (text.size() <= kLongest) return text;
-    std::size_t end = kLongest;
-    while (end > 0 && (text[end] & 0xc0) == 0x80) --end;
-    return text.substr(0, end) + "…";
-}
+/// Of a label, in bytes: what fits beside a value.
+constexpr std::size_t kLongest = 44;
 
 }  // namespace
 
@@ -43,8 +37,8 @@ std::string bar_chart(const std::string& title, const std::string& unit,
         const double bar_top = top + 19, middle = bar_top + kBarHeight / 2;
         svg += fmt::format(
             "<text x=\"{}\" y=\"{}\">{}</text><text class=\"value\" x=\"{}\" y=\"{}\">{}</text>\n",
-            kMargin, top + 13, escape(shortened(bars[i].label)), kWidth - kMargin, top + 13,
-            escape(measure::readable(s.median, unit)));
+            kMargin, top + 13, escape(shortened(bars[i].label, kLongest)), kWidth - kMargin,
+            top + 13, escape(measure::readable(s.median, unit)));
         svg += fmt::format(
             "<rect class=\"track\" x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" rx=\"2\"/>"
             "<rect class=\"bar\" x=\"{0}\" y=\"{1}\" width=\"{4:.2f}\" height=\"{3}\" rx=\"2\"/>\n",
@@ -52,7 +46,7 @@ std::string bar_chart(const std::string& title, const std::string& unit,
             std::max(1.0, x(s.median) - kMargin));
         svg += fmt::format(
             "<path class=\"spread\" d=\"M{0:.2f} {2}H{1:.2f}M{0:.2f} {3}v8M{1:.2f} {3}v8\"/>"
-            "<path class=\"spread\" style=\"stroke-width:4\" d=\"M{4:.2f} {2}H{5:.2f}\"/>\n",
+            "<path class=\"spread thick\" d=\"M{4:.2f} {2}H{5:.2f}\"/>\n",
             x(s.min), x(s.max), middle, middle - 4, x(s.ci_low), x(s.ci_high));
     }
     return svg + "</svg>\n";

@@ -30,6 +30,9 @@ tr:last-child td { border-bottom: 0; } th { font-weight: 600; color: var(--soft)
 th:first-child, td:first-child { text-align: left; }
 td .spread { display: block; font-size: .75rem; font-weight: 400; color: var(--soft); }
 td.best { color: var(--best); font-weight: 600; }
+table.matrix :is(th, td) { text-align: left; }
+td.pass { background: color-mix(in srgb, var(--best) 18%, transparent); }
+td.fail { background: color-mix(in srgb, var(--bad) 22%, transparent); }
 table.facts td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
 table.facts td:first-child { color: var(--soft); white-space: nowrap; vertical-align: top; }
 .charts { display: grid; gap: 1rem; margin: 1rem 0;
@@ -39,7 +42,7 @@ table.facts td:first-child { color: var(--soft); white-space: nowrap; vertical-a
 svg text { fill: var(--ink); font: 12px system-ui, "DejaVu Sans", sans-serif; }
 svg .title { font-weight: 600; font-size: 13px; } svg .value { text-anchor: end; }
 svg .bar { fill: var(--bar); } svg .track { fill: var(--bar2); opacity: .25; }
-svg .spread { stroke: var(--mark); stroke-width: 1.5; fill: none; }
+svg .spread { stroke: var(--mark); stroke-width: 1.5; fill: none; } svg .thick { stroke-width: 4; }
 svg.pareto { display: block; width: 100%; min-width: 44rem; height: auto; }
 svg .middle { text-anchor: middle; } svg .soft, svg .tick { fill: var(--soft); }
 svg .tick { font-size: 11px; } svg .grid { stroke: var(--line); }
@@ -49,7 +52,9 @@ svg .label { font-size: 11px; fill: var(--soft); paint-order: stroke; stroke: va
 svg .leader { stroke: var(--soft); stroke-width: .75; }
 svg .front { fill: none; stroke: var(--mark); stroke-width: 1.5; opacity: .6; }
 svg .mark { fill: var(--c); stroke: var(--c); stroke-width: 1.75; } svg .open { fill: var(--card); }
+svg .curve { fill: none; stroke: var(--c); stroke-width: 1.75; }
 svg .span { stroke: var(--c); stroke-width: 1.5; opacity: .5; }
+svg:root { background: var(--card); } svg.pareto:root { min-width: 0; }
 .s0 { --c: #2f7d5b; } .s1 { --c: #0072b2; } .s2 { --c: #d55e00; } .s3 { --c: #9a4f8c; }
 .s4 { --c: #b08900; } .s5 { --c: #3aa0d8; } .s6 { --c: #7a5230; } .s7 { --c: #777f86; }
 @media (prefers-color-scheme: dark) { .s0 { --c: #4fae84; } .s1 { --c: #4da6e0; }
@@ -104,6 +109,13 @@ std::string escape(std::string_view text) {
     return out;
 }
 
+std::string shortened(const std::string& text, std::size_t longest) {
+    if (text.size() <= longest) return text;
+    std::size_t end = longest;
+    while (end > 0 && (text[end] & 0xc0) == 0x80) --end;
+    return text.substr(0, end) + "…";
+}
+
 std::string png_data_uri(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw std::runtime_error(file.string() + ": cannot be read");
@@ -114,8 +126,7 @@ std::string png_data_uri(const std::filesystem::path& file) {
 std::string standalone_svg(const std::string& svg) {
     const std::size_t inside = svg.find('>') + 1;
     return "<svg xmlns=\"http://www.w3.org/2000/svg\"" + svg.substr(4, inside - 4) + "<style>" +
-           kStyle + "svg { background: var(--card); } svg.pareto { min-width: 0; }</style>" +
-           svg.substr(inside);
+           kStyle + "</style>" + svg.substr(inside);
 }
 
 std::string document_head(const std::string& title) {

@@ -1,4 +1,4 @@
-// Small pieces of HTML.
+// Small pieces of HTML, and the style sheet of all pages and drawings.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,9 @@ namespace experiments::report {
 
 /// `text` with the characters that mean something in HTML replaced.
 std::string escape(std::string_view text);
+
+/// `text` cut to `longest` bytes, at the end of a UTF-8 character, with an ellipsis for the rest.
+std::string shortened(const std::string& text, std::size_t longest);
 
 /// "data:image/png;base64,..." of a file. Throws std::runtime_error if it cannot be read.
 std::string png_data_uri(const std::filesystem::path& file);

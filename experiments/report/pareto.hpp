@@ -29,7 +29,7 @@ std::vector<Tradeoff> find_tradeoffs(std::span<const measure::ResultSummary> res
 /// own below them. A mark per entry, the front joined by a staircase; at least one entry.
 std::string pareto_chart(const std::string& title, std::span<const Tradeoff> tradeoffs);
 
-/// All scenes of a run as CSV, a line per entry; empty if no result has both numbers.
-std::string pareto_csv(std::span<const measure::ResultSummary> results);
+/// As CSV, a line per entry, of one scene or more; empty if there is none.
+std::string pareto_csv(std::span<const Tradeoff> tradeoffs);
 
 }  // namespace experiments::report

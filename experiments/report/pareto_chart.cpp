@@ -17,6 +17,7 @@ constexpr double kZeroRoom = 46;
 constexpr double kMark = 5.5;
 /// Of a label's text, for finding room.
 constexpr double kLetter = 6.9, kLine = 14;
+constexpr std::size_t kLongest = 40;  ///< bytes of it
 constexpr std::size_t kSeries = 8;
 
 /// A logarithmic axis from `low` to `high` on the values' side, `from` to `to` on the page's.
@@ -72,14 +73,6 @@ std::string mark_path(std::size_t series, double x, double y) {
             return fmt::format("M{:.1f} {:.1f}l{:.1f} {:.1f}h{:.1f}z", x, y + 1.2 * r, -1.15 * r,
                                -2 * r, 2.3 * r);
     }
-}
-
-std::string shortened(const std::string& text) {
-    constexpr std::size_t kLongest = 40;
-    if (text.size() <= kLongest) return text;
-    std::size_t end = kLongest;
-    while (end > 0 && (text[end] & 0xc0) == 0x80) --end;
-    return text.substr(0, end) + "…";
 }
 
 /// Colour and shape tell the method already.
@@ -189,7 +182,7 @@ class Chart {
         for (const bool front : {true, false})
             for (const Tradeoff& one : list_) {
                 if (one.front != front) continue;
-                const std::string text = shortened(label(one));
+                const std::string text = shortened(label(one), kLongest);
                 Box box{};
                 if (!places.find(x(one), y(one), kLetter * double(text.size()), kLine,
                                  front ? 90 : 12, box))

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "experiments/measure/metrics.hpp"
 #include "experiments/measure/run_folder.hpp"
 #include "experiments/measure/session.hpp"
 #include "experiments/measure/summary.hpp"
 #include "experiments/report/charts.hpp"
+#include "experiments/report/frames.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/pareto.hpp"
 #include "experiments/report/stability.hpp"
@@ -22,35 +24,25 @@ using Results = std::vector<ResultSummary>;
 
 constexpr const char* kCharted[] = {"build_ms", "query_ms", "total_ms", "sah_cost", "memory_bytes"};
 
-/// As the manifest names the reference method.
-std::string label(const std::string& method, const std::string& variant) {
-    return fmt::format("{} {}", method, variant);
-}
+struct SceneResults {
+    std::string name;
+    Results methods{};
+    std::optional<ResultSummary> facts{};  ///< the rows about the scene itself
+};
 
-std::string label(const ResultSummary& result) {
-    return result.variant == "default" ? result.method : label(result.method, result.variant);
-}
-
-std::vector<std::string> scene_names(const Results& results) {
-    std::vector<std::string> names;
-    for (const ResultSummary& result : results)
-        if (std::find(names.begin(), names.end(), result.scene) == names.end())
-            names.push_back(result.scene);
-    return names;
-}
-
-/// Results of a scene's methods, and through `facts` the rows about the scene itself.
-Results of_scene(const Results& results, const std::string& scene, const ResultSummary** facts) {
-    Results list;
-    *facts = nullptr;
+/// In the order of their first rows.
+std::vector<SceneResults> by_scene(std::span<const ResultSummary> results) {
+    std::vector<SceneResults> scenes;
     for (const ResultSummary& result : results) {
-        if (result.scene != scene) continue;
+        auto scene = std::find_if(scenes.begin(), scenes.end(),
+                                  [&](const auto& s) { return s.name == result.scene; });
+        if (scene == scenes.end()) scene = scenes.insert(scene, SceneResults{result.scene});
         if (result.method == measure::kSceneRows)
-            *facts = &result;
+            scene->facts = result;
         else
-            list.push_back(result);
+            scene->methods.push_back(result);
     }
-    return list;
+    return scenes;
 }
 
 /// Metrics that any of the results has: first the known ones in the list's order.
@@ -105,7 +97,7 @@ std::string table(const Results& results) {
     }
     html += "</tr>\n";
     for (const ResultSummary& result : results) {
-        html += "<tr><td>" + escape(label(result)) + "</td>";
+        html += "<tr><td>" + escape(result.label()) + "</td>";
         for (const std::string& name : names) html += cell(results, name, result);
         html += "</tr>\n";
     }
@@ -120,7 +112,7 @@ std::string charts(const Results& results) {
         for (const ResultSummary& result : results) {
             const MetricSummary* summary = result.find(name);
             if (!summary) continue;
-            bars.push_back({label(result), summary->statistics});
+            bars.push_back({result.label(), summary->statistics});
             unit = summary->unit;
         }
         if (bars.empty()) continue;
@@ -132,8 +124,7 @@ std::string charts(const Results& results) {
 
 /// The plot in the page, and as a file for other pages.
 std::string pareto(const std::filesystem::path& run, const std::string& scene,
-                   const Results& results) {
-    const std::vector<Tradeoff> tradeoffs = find_tradeoffs(results);
+                   std::span<const Tradeoff> tradeoffs) {
     if (tradeoffs.size() < 2) return {};
     const std::string svg = pareto_chart(scene + ": run time against error", tradeoffs);
     std::filesystem::create_directories(run / "images");  // recorded runs may lack it
@@ -156,7 +147,7 @@ std::string pictures(const std::filesystem::path& run, const nlohmann::json& man
                           variant = image.at("variant"), file = image.at("file");
         const bool common = kind == "shaded" || kind == "visibility";
         if (image.at("scene") != scene || !std::filesystem::exists(run / file)) continue;
-        if (common && label(method, variant) != reference) continue;
+        if (common && method + " " + variant != reference) continue;
         any_errors = any_errors || kind == "errors";
         (common ? first : rest) += fmt::format(
             "<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}: {} {}</figcaption></figure>\n",
@@ -215,28 +206,40 @@ std::string failures(const nlohmann::json& manifest) {
     return html;
 }
 
+/// Run time along the scene's path, if it has one.
+std::string curves(std::span<const measure::Row> rows, const std::string& scene) {
+    const std::vector<Curve> found = find_curves(rows, scene);
+    if (found.empty()) return {};
+    return "<div class=\"scroll\">\n" + frame_chart(scene + ": run time along the path", found) +
+           "</div>\n";
+}
+
 std::string scene_section(const std::filesystem::path& run, const nlohmann::json& manifest,
-                          const Results& all, const std::string& scene) {
-    const ResultSummary* facts = nullptr;
-    const Results results = of_scene(all, scene, &facts);
-    std::string html = "<section>\n<h2>" + escape(scene) + "</h2>\n";
-    if (facts) {
+                          const SceneResults& scene, std::span<const measure::Row> rows,
+                          std::span<const Tradeoff> tradeoffs) {
+    std::string html = "<section>\n<h2>" + escape(scene.name) + "</h2>\n";
+    if (scene.facts) {
         std::vector<std::string> parts;
-        for (const MetricSummary& summary : facts->metrics)
+        for (const MetricSummary& summary : scene.facts->metrics)
             parts.push_back(summary.metric + " " +
                             measure::readable(summary.statistics.median, summary.unit));
         html += fmt::format("<p class=\"soft\">{}</p>\n",
                             escape(fmt::format("{}", fmt::join(parts, " · "))));
     }
-    if (!results.empty()) html += table(results) + pareto(run, scene, results) + charts(results);
-    return html + pictures(run, manifest, scene) + "</section>\n";
+    if (!scene.methods.empty())
+        html += table(scene.methods) + curves(rows, scene.name) +
+                pareto(run, scene.name, tradeoffs) + charts(scene.methods);
+    return html + pictures(run, manifest, scene.name) + "</section>\n";
 }
 
-}  // namespace
+nlohmann::json read_manifest(const std::filesystem::path& run) {
+    return measure::read_json(run / "manifest.json");
+}
 
-void write_report(const std::filesystem::path& run) {
-    const nlohmann::json manifest = measure::read_json(run / "manifest.json");
-    const Results results = measure::summarise(measure::read_samples(run / "samples.csv"));
+void write(const std::filesystem::path& run, const nlohmann::json& manifest,
+           std::span<const measure::Row> rows, std::span<const ResultSummary> results) {
+    const std::vector<SceneResults> scenes = by_scene(results);
+    std::vector<Tradeoff> tradeoffs;  // of all scenes
     std::string html;
     try {
         const auto& config = manifest.at("config");
@@ -260,16 +263,32 @@ void write_report(const std::filesystem::path& run) {
         if (stability)
             html += stability_section(results);
         else
-            for (const std::string& scene : scene_names(results))
-                html += scene_section(run, manifest, results, scene);
+            for (const SceneResults& scene : scenes) {
+                const std::vector<Tradeoff> own = find_tradeoffs(scene.methods);
+                html += scene_section(run, manifest, scene, rows, own);
+                tradeoffs.insert(tradeoffs.end(), own.begin(), own.end());
+            }
         html += provenance(manifest) + "</body>\n</html>\n";
     } catch (const nlohmann::json::exception& error) {
         throw std::runtime_error((run / "manifest.json").string() +
                                  ": is no manifest of a run: " + error.what());
     }
     measure::write_text(run / "report.html", html);
-    const std::string csv = pareto_csv(results);
-    if (!csv.empty()) measure::write_text(run / "pareto.csv", csv);
+    if (!tradeoffs.empty()) measure::write_text(run / "pareto.csv", pareto_csv(tradeoffs));
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& run) {
+    // The manifest first: without it the folder is none of a run.
+    const nlohmann::json manifest = read_manifest(run);
+    const std::vector<measure::Row> rows = measure::read_samples(run / "samples.csv");
+    write(run, manifest, rows, measure::summarise(rows));
+}
+
+void write_report(const std::filesystem::path& run, std::span<const measure::Row> rows,
+                  std::span<const ResultSummary> results) {
+    write(run, read_manifest(run), rows, results);
 }
 
 }  // namespace experiments::report

@@ -2,24 +2,20 @@
 
 #include <fmt/format.h>
 
+#include "experiments/measure/stability_matrix.hpp"
 #include "experiments/report/html.hpp"
-#include "experiments/stability/matrix.hpp"
 #include "experiments/stability/suite.hpp"
 
 namespace experiments::report {
 namespace {
 
-using stability::Cell;
+using measure::Cell;
 
 constexpr const char* kHead =
-    "<style>td.pass { background: color-mix(in srgb, var(--best) 18%, transparent); }\n"
-    "td.fail { background: color-mix(in srgb, var(--bad) 22%, transparent); }\n"
-    "table.matrix td { text-align: left; } table.matrix th { text-align: left; }</style>\n"
     "<h2>Tests and methods</h2>\n"
     "<p class=\"soft\">Green: every instance of the test passed, and how many there were. Red: how "
     "many failed, with the points wrongly called lit, wrongly called dark, answered inexactly "
-    "where "
-    "exactness was asked for, left unanswered, and the errors thrown; below, the worst "
+    "where exactness was asked for, left unanswered, and the errors thrown; below, the worst "
     "point.</p>\n";
 
 std::string what_it_checks(const std::string& label) {
@@ -39,7 +35,7 @@ std::string html_cell(const Cell& cell) {
 }  // namespace
 
 std::string stability_section(std::span<const measure::ResultSummary> results) {
-    const stability::Matrix matrix = stability::make_matrix(results);
+    const measure::Matrix matrix = measure::make_matrix(results);
     std::string html = kHead;
     html += "<div class=\"scroll\"><table class=\"matrix\">\n<tr><th>test</th>";
     for (const std::string& method : matrix.methods) html += "<th>" + escape(method) + "</th>";

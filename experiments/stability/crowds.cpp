@@ -1,4 +1,5 @@
 // Stress tests of many triangles at once: copies, rows, crossings, and some that are broken.
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -8,8 +9,6 @@ namespace experiments::stability {
 namespace {
 
 using enum Expected;
-
-constexpr glm::vec3 kOrigin(0), kDown(0, -1, 0);
 
 }  // namespace
 
@@ -43,10 +42,7 @@ Scenes repeated_triangle(Light::Type type) {
     scene.mesh.triangles.resize(100'000 + scene.essential, scene.mesh.triangles[0]);
     for (int i = 0; i < 256; ++i) {
         const glm::dvec3 q((i % 16 - 7.5) * 0.25, -30, (i / 16 - 7.5) * 0.25);
-        ask(scene, behind(scene.light, q, 2),
-            std::hypot(q.x, q.z) < 0.48  ? shadowed
-            : std::hypot(q.x, q.z) > 1.6 ? lit
-                                         : unsaid);
+        ask(scene, behind(scene.light, q, 2), by_reach(std::hypot(q.x, q.z), 0.48, 1.6));
     }
     return {scene};
 }
@@ -122,36 +118,53 @@ Scenes spokes(Light::Type type) {
     return {scene};
 }
 
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+using Corners = std::array<glm::dvec3, 3>;
+
+/// Two equal corners, or all on a line through the origin, by factors that do not round.
+void flatten(Corners& corners, int i) {
+    corners[2] = i % 2 ? corners[1] : 2.0 * glm::dvec3(glm::vec3(corners[0]));
+    if (i % 2 == 0) corners[1] = 0.25 * corners[2];
+}
+
+/// In one coordinate of one, two or all corners, of either sign.
+void put_in(double value, Corners& corners, int i) {
+    for (int k = 0; k <= i % 3; ++k) corners[k][(i + k) % 3] = i % 4 < 2 ? value : -value;
+}
+
+}  // namespace
+
 Scenes broken_triangles(Light::Type type) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    constexpr double kInf = std::numeric_limits<double>::infinity();
+    struct Fault {
+        const char* name;
+        void (*spoil)(Corners& corners, int i);
+    };
     Scenes scenes;
-    for (const char* name : {"no area", "NaN", "infinity"}) {
-        Scene scene = make_scene(name, either_light(type, kOrigin, kDown));
+    for (const Fault& fault :
+         {Fault{"no area", flatten},
+          Fault{"NaN", [](Corners&corners, int i) { put_in(kNan, corners, i); }},
+          Fault{"infinity", [](Corners&corners, int i) { put_in(kInf, corners, i); }}}) {
+        Scene scene = make_scene(fault.name, either_light(type, kOrigin, kDown));
         const std::uint32_t floor = add_floor(scene.mesh, {0, -3, 0}, 5);
         add_closed_box(scene.mesh, {-0.5, -2.2, -0.5}, {0.5, -1.8, 0.5});
         scene.essential = scene.mesh.triangle_count();
-        const double broken = name[0] == 'N' ? kNan : kInf;
         scenes::Random random(26);
         for (int i = 0; i < 60; ++i) {
-            glm::dvec3 corners[3];
+            Corners corners;
             for (glm::dvec3& corner : corners)
                 corner = glm::dvec3(0, -1, 0) + random.uniform(0, 3) * random.direction();
-            if (name[0] == 'n')
-                corners[2] = i % 2 ? corners[1] : 2.0 * glm::dvec3(glm::vec3(corners[0]));
-            if (name[0] == 'n' && i % 2 == 0) corners[1] = 0.5 * corners[2] * 0.5;
-            for (int k = 0; k <= i % 3 && name[0] != 'n'; ++k)
-                corners[k][(i + k) % 3] = i % 4 < 2 ? broken : -broken;
+            fault.spoil(corners, i);
             add_triangle(scene.mesh, corners[0], corners[1], corners[2]);
         }
         const bool point = type == Light::Type::point;
         for (int i = 0; i < 256; ++i) {
             const double x = (i % 16 - 7.6) * 0.25, z = (i / 16 - 7.5) * 0.25;
             const double reach = std::max(std::abs(x), std::abs(z));
-            ask(scene, {x, -3, z},
-                reach < (point ? 0.6 : 0.45)   ? shadowed
-                : reach > (point ? 0.9 : 0.55) ? lit
-                                               : unsaid,
+            ask(scene, {x, -3, z}, point ? by_reach(reach, 0.6, 0.9) : by_reach(reach, 0.45, 0.55),
                 floor_at(floor, x, z));
         }
         scenes.push_back(scene);

@@ -9,8 +9,6 @@ namespace {
 
 using enum Expected;
 
-constexpr glm::vec3 kOrigin(0), kDown(0, -1, 0);
-
 /// `steps` representable numbers away, axis by axis.
 glm::vec3 neighbour(glm::vec3 p, glm::ivec3 steps) {
     for (int axis = 0; axis < 3; ++axis)
@@ -53,8 +51,7 @@ Scenes quad_diagonal(Light::Type type) {
     add_floor(scene.mesh, {0, -3, 0}, 1);
     for (int i = 0; i < 256; ++i) {
         const double t = -1.2 + 2.4 * i / 255;
-        const Expected expected = std::abs(t) < 0.98 ? shadowed : std::abs(t) > 1.02 ? lit : unsaid;
-        ask(scene, behind(scene.light, {t, -3, t}, 2), expected);
+        ask(scene, behind(scene.light, {t, -3, t}, 2), by_reach(std::abs(t), 0.98, 1.02));
     }
     return {scene};
 }
@@ -127,21 +124,26 @@ Scenes wedge_mid_edge(Light::Type type) {
 }
 
 Scenes single_sheet(Light::Type type) {
+    struct Winding {
+        const char* name;
+        bool (*turned)(int triangle);
+    };
     Scenes scenes;
-    for (const char* winding : {"clockwise", "counter-clockwise", "mixed"}) {
+    for (const Winding& winding :
+         {Winding{"clockwise", [](int) { return false; }},
+          Winding{"counter-clockwise", [](int) { return true; }},
+          Winding{"mixed", [](int triangle) { return triangle % 4 == 1 || triangle % 4 == 2; }}}) {
         Scene scene =
-            make_scene(winding, either_light(type, {0.5f, 0, 0.25f}, {0.25f, -1, 0.125f}));
+            make_scene(winding.name, either_light(type, {0.5f, 0, 0.25f}, {0.25f, -1, 0.125f}));
         for (int i = 0; i < 25; ++i)
             scene.mesh.positions.emplace_back(i % 5 - 2, -3 + 0.125 * (i % 3), i / 5 - 2);
         for (int cell = 0; cell < 16; ++cell) {
             const std::uint32_t at = cell / 4 * 5 + cell % 4;
-            glm::uvec3 one(at, at + 1, at + 6), other(at, at + 6, at + 5);
-            if (winding[0] == 'c' && winding[1] == 'o')
-                std::swap(one.y, one.z), std::swap(other.y, other.z);
-            if (winding[0] == 'm') cell % 2 ? std::swap(one.y, one.z) : std::swap(other.y, other.z);
-            scene.mesh.triangles.push_back(one);
-            scene.mesh.triangles.push_back(other);
+            scene.mesh.triangles.emplace_back(at, at + 1, at + 6);
+            scene.mesh.triangles.emplace_back(at, at + 6, at + 5);
         }
+        for (int t = 0; t < 32; ++t)
+            if (winding.turned(t)) std::swap(scene.mesh.triangles[t].y, scene.mesh.triangles[t].z);
         // On vertices, edges and faces of the sheet, away from its border.
         for (std::uint32_t t = 0; t < 32; ++t)
             for (int k = 0; k < 8; ++k) {

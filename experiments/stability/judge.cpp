@@ -21,11 +21,12 @@ void fail(const ScenePoint& point, const char* expected, const char* found) {
                                          expected, found));
 }
 
-void check_expectations(const JudgedScene& judged, bool as_built) {
+void check_expectations(const JudgedScene& judged) {
     for (std::size_t i = 0; i < judged.scene.points.size(); ++i) {
         const ScenePoint& point = judged.scene.points[i];
         const Verdict verdict = judged.verdicts.points[place_in_image(i)];
-        if (point.expected == Expected::unsaid || !(as_built || verdict.certain())) continue;
+        if (point.expected == Expected::unsaid || !(judged.scene.as_built || verdict.certain()))
+            continue;
         const bool shadowed = point.expected == Expected::shadowed;
         if (verdict.shadowed() == shadowed) continue;
         shadowed ? fail(point, "shadow", "light") : fail(point, "light", "shadow");
@@ -54,10 +55,10 @@ int severity(const Verdict& verdict) {
 
 }  // namespace
 
-JudgedScene judge(const Scene& scene, bool as_built) {
+JudgedScene judge(const Scene& scene) {
     JudgedScene judged{scene, make_image(scene), {}};
     judged.verdicts = verdicts_of(scene.mesh, scene, judged.image);
-    check_expectations(judged, as_built);
+    check_expectations(judged);
     if (scene.essential > 0) check_essential(judged);
     return judged;
 }
@@ -68,7 +69,8 @@ Marks JudgedScene::mark(const shadows::Visibility& visible) const {
         const std::uint32_t at = place_in_image(i);
         const Verdict verdict = verdicts.points[at];
         const bool lit = visible.lit(at);
-        const bool unexpected = scene.exact && scene.points[i].expected != Expected::unsaid &&
+        const bool unexpected = scene.exact && scene.as_built &&
+                                scene.points[i].expected != Expected::unsaid &&
                                 lit != (scene.points[i].expected == Expected::lit);
         if (verdict.ambiguous() ? !unexpected : lit != verdict.shadowed()) continue;
         if (verdict.facing_away()) continue;

@@ -1,8 +1,8 @@
 // One scene of the suite with the truth about it, and a method's answer held against that.
 //
-//     const JudgedScene judged = judge(scene);       // throws if truth and expectation differ
+//     const JudgedScene judged = judge(scene);  // throws if truth and expectation differ
 //     const Marks marks = judged.mark(visible);
-//     if (!marks.passed()) ... marks.worst ...
+//     if (!marks.passed()) report(*marks.worst);
 #pragma once
 
 #include <optional>
@@ -39,8 +39,8 @@ struct JudgedScene {
 };
 
 /// Judges the points. Throws std::runtime_error if the judge does not find what geometry expects:
-/// at every point where it is certain, and at all points while `as_built`; or if triangles beyond
-/// the essential ones change the image.
-JudgedScene judge(const Scene& scene, bool as_built);
+/// at every point where it is certain, and at all points of a scene as built; or if triangles
+/// beyond the essential ones change the image.
+JudgedScene judge(const Scene& scene);
 
 }  // namespace experiments::stability

@@ -8,8 +8,6 @@ namespace {
 
 using enum Expected;
 
-constexpr glm::vec3 kDown(0, -1, 0);
-
 }  // namespace
 
 Scenes closed_room(Light::Type type) {
@@ -32,31 +30,29 @@ Scenes closed_room(Light::Type type) {
 }
 
 Scenes no_casters(Light::Type type) {
-    Scenes scenes;
-    for (const char* name : {"no triangles", "no area", "none in between"}) {
-        Scene scene = make_scene(name, either_light(type, {0, 4, 0}, kDown));
-        if (name[1] == 'o' && name[3] == 'a')
-            for (int i = 0; i < 8; ++i) {
-                const glm::dvec3 a(i - 4, 1, 0), b(i, 2, i);
-                add_triangle(scene.mesh, a, a, b);
-                add_triangle(scene.mesh, a, b, a + 2.0 * (b - a));
-            }
-        if (name[2] == 'n')
-            for (int i = 0; i < 64; ++i) {
-                // Below all points; and, for a point light, above the light.
-                const double y = i % 2 && type == Light::Type::point ? 5 : -1;
-                add_triangle(scene.mesh, {i % 8 - 4, y, i / 8 - 4}, {i % 8 - 3, y, i / 8 - 4},
-                             {i % 8 - 4, y - 0.5, i / 8 - 3});
-            }
+    const Light light = either_light(type, {0, 4, 0}, kDown);
+    Scene no_triangles = make_scene("no triangles", light), no_area = make_scene("no area", light),
+          aside = make_scene("none in between", light);
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 a(i - 4, 1, 0), b(i, 2, i);
+        add_triangle(no_area.mesh, a, a, b);
+        add_triangle(no_area.mesh, a, b, a + 2.0 * (b - a));
+    }
+    for (int i = 0; i < 64; ++i) {
+        // Below all points; and, for a point light, above the light.
+        const double y = i % 2 && type == Light::Type::point ? 5 : -1;
+        add_triangle(aside.mesh, {i % 8 - 4, y, i / 8 - 4}, {i % 8 - 3, y, i / 8 - 4},
+                     {i % 8 - 4, y - 0.5, i / 8 - 3});
+    }
+    Scenes scenes{no_triangles, no_area, aside};
+    for (Scene& scene : scenes)
         for (int i = 0; i < 256; ++i)
             ask(scene, {i % 16 * 0.5 - 4, 0.1 * (i % 5), i / 16 * 0.5 - 4}, lit);
-        scenes.push_back(scene);
-    }
     return scenes;
 }
 
 Scenes caster_beyond(Light::Type type) {
-    Scene scene = make_scene("", either_light(type, {0, 0, 0}, kDown));
+    Scene scene = make_scene("", either_light(type, kOrigin, kDown));
     // The mirror image, in the light, of where it would cast: a plane through the light alone does
     // not tell the two apart.
     const double height = type == Light::Type::point ? 5 : -8;
@@ -78,7 +74,7 @@ Scenes caster_behind_camera(Light::Type type) {
         const double x = (i % 16 - 7.5) / 7.5 * 2 * size, y = (i / 16 - 7.5) / 7.5 * 2 * size;
         const double reach = std::max(std::abs(x), std::abs(y)) / size;
         const std::uint32_t own = x >= y + 0.5 ? 0 : 1;
-        ask(scene, {x, y + 0.5, -5}, reach < 0.98 ? shadowed : reach > 1.02 ? lit : unsaid, own);
+        ask(scene, {x, y + 0.5, -5}, by_reach(reach, 0.98, 1.02), own);
     }
     return {scene};
 }

@@ -9,8 +9,6 @@ namespace {
 
 using enum Expected;
 
-constexpr glm::vec3 kOrigin(0), kDown(0, -1, 0);
-
 /// What an observer at `p` sees of a light on the surface of the box [-1, 1]^3. The segment enters
 /// the box next to the light if it starts on the inner side of every face that the light is on.
 Expected seen_past_box(glm::vec3 p, glm::vec3 light) {

@@ -8,8 +8,6 @@ namespace {
 
 using enum Expected;
 
-constexpr glm::vec3 kOrigin(0), kDown(0, -1, 0);
-
 /// Points around the stretch a-b, at most 4 radii away: lit within it, shadowed outside.
 void ask_around(Scene& scene, glm::dvec3 a, glm::dvec3 b, double radius) {
     scenes::Random random(13);
@@ -94,10 +92,7 @@ Scenes capsule_end_on(Light::Type) {
         const double reach = 1.9 * (i % 16) / 15;
         const double y = i / 128 ? -6 : -2;  // below, and beside where it is outside
         if (y == -2 && reach < 1.02) continue;
-        ask(scene, {reach * radius * c.x, y, reach * radius * c.y},
-            reach < 0.97   ? shadowed
-            : reach > 1.02 ? lit
-                           : unsaid);
+        ask(scene, {reach * radius * c.x, y, reach * radius * c.y}, by_reach(reach, 0.97, 1.02));
     }
     return {scene};
 }

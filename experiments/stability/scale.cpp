@@ -8,12 +8,8 @@ namespace {
 
 using enum Expected;
 
-constexpr glm::vec3 kDown(0, -1, 0);
-
-Expected square_shadow(double x, double z, double certain, double outside) {
-    const double reach = std::max(std::abs(x), std::abs(z));
-    return reach < certain ? shadowed : reach > outside ? lit : unsaid;
-}
+/// Of (x, z) in the shadow of a square.
+double square_reach(double x, double z) { return std::max(std::abs(x), std::abs(z)); }
 
 }  // namespace
 
@@ -23,7 +19,7 @@ Scenes far_light(Light::Type type) {
     add_closed_box(scene.mesh, {-0.25, 1, -0.25}, {0.25, 1.5, 0.25});
     for (int i = 0; i < 256; ++i) {
         const double x = (i % 16 - 7.5) * 0.1, z = (i / 16 - 7.5) * 0.1;
-        ask(scene, {x, 0, z}, square_shadow(x, z, 0.2, 0.4), floor_at(floor, x, z));
+        ask(scene, {x, 0, z}, by_reach(square_reach(x, z), 0.2, 0.4), floor_at(floor, x, z));
     }
     return {scene};
 }
@@ -38,7 +34,7 @@ Scenes far_from_origin(Light::Type type) {
     const double widest = type == Light::Type::point ? 400 / 0.6 : 400;
     for (int i = 0; i < 256; ++i) {
         const double x = (i % 16 - 7.6) * 140, z = (i / 16 - 7.5) * 140;
-        ask(scene, offset + glm::dvec3(x, 0, z), square_shadow(x, z, 380, widest + 60),
+        ask(scene, offset + glm::dvec3(x, 0, z), by_reach(square_reach(x, z), 380, widest + 60),
             floor_at(floor, x, z));
     }
     return {scene};
@@ -48,10 +44,10 @@ Scenes contact_shadow(Light::Type type) {
     Scenes scenes;
     // Rays that start too far off the floor are in the box already, and leave it through its other
     // side; over a wall they jump.
-    for (const char* name : {"box", "wall"}) {
-        Scene scene = make_scene(name, either_light(type, {4, 5, 0.5f}, {-0.8f, -1, -0.1f}));
+    for (const bool box : {true, false}) {
+        Scene scene =
+            make_scene(box ? "box" : "wall", either_light(type, {4, 5, 0.5f}, {-0.8f, -1, -0.1f}));
         const std::uint32_t floor = add_floor(scene.mesh, {0, 0, 0}, 5);
-        const bool box = name[0] == 'b';
         if (box)
             add_closed_box(scene.mesh, {-1, 0, -1}, {1, 1, 1});
         else

@@ -23,6 +23,14 @@ using structures::geometry::TriangleMesh;
 /// What geometry says of a point; `unsaid` where only the judge knows.
 enum class Expected : std::uint8_t { unsaid, lit, shadowed };
 
+/// For a shadow that reaches between `certain` and `outside`: what `reach` away from its middle is
+/// to be expected.
+constexpr Expected by_reach(double reach, double certain, double outside) {
+    return reach < certain   ? Expected::shadowed
+           : reach > outside ? Expected::lit
+                             : Expected::unsaid;
+}
+
 struct ScenePoint {
     glm::vec3 position;
     std::uint32_t receiver = shadows::kNoReceiver;  ///< the triangle it lies on
@@ -36,10 +44,13 @@ struct Scene {
     std::vector<ScenePoint> points{};
     /// Not 0: only the first `essential` triangles matter, and the rest must not change the image.
     std::size_t essential = 0;
-    /// Answers must be as expected within the rounding band too, while the coordinates are those
-    /// that were chosen to be exact.
+    /// Whether the coordinates are those that were chosen; else they were rounded since.
+    bool as_built = true;
+    /// Answers must be as expected within the rounding band too, as built.
     bool exact = false;
 };
+
+inline constexpr glm::vec3 kOrigin(0), kDown(0, -1, 0);
 
 Light point_light(glm::vec3 position);
 /// `direction` is the way the light travels.

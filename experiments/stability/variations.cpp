@@ -73,15 +73,15 @@ std::string Variation::label() const {
     }
 }
 
-std::vector<Variation> variations(const config::Stability& config, std::int64_t seed, int most) {
+std::vector<Variation> variations(const Selection& selection, std::int64_t seed, int most) {
     std::vector<Variation> list(1);
     const auto first = static_cast<std::uint64_t>(seed) * 1000;
-    for (int i = 0; i < std::min(config.transforms, most); ++i)
+    for (int i = 0; i < std::min(selection.transforms, most); ++i)
         list.push_back({Variation::Kind::transform, first + i});
-    for (int i = 0; i < std::min(config.orders, most); ++i)
+    for (int i = 0; i < std::min(selection.orders, most); ++i)
         list.push_back({Variation::Kind::order, first + i});
-    for (int i = 0; i < std::min(int(config.scales.size()), most); ++i)
-        list.push_back({Variation::Kind::scale, 0, config.scales[i]});
+    for (int i = 0; i < std::min(int(selection.scales.size()), most); ++i)
+        list.push_back({Variation::Kind::scale, 0, selection.scales[i]});
     return list;
 }
 
@@ -101,7 +101,7 @@ Scene vary(const Scene& scene, const Variation& variation) {
         case Variation::Kind::none:
             break;
     }
-    varied.exact = scene.exact && variation.keeps_coordinates();
+    varied.as_built = scene.as_built && variation.keeps_coordinates();
     return varied;
 }
 

@@ -1,17 +1,24 @@
 // Variations of a stress scene whose answers should be the same: moved and turned, with its
 // triangles in another order, larger or smaller.
 //
-//     for (const Variation& variation : variations(config.stability, config.seed, test.most))
-//         judge(vary(scene, variation));
+//     for (const Variation& variation : variations(selection, seed, test.most))
+//         const JudgedScene judged = judge(vary(scene, variation));
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "experiments/config/stability.hpp"
 #include "experiments/stability/scene.hpp"
 
 namespace experiments::stability {
+
+/// What an experiment takes of the suite.
+struct Selection {
+    std::vector<int> tests{};  ///< numbers, ascending
+    int transforms = 10;       ///< random rigid transforms of each scene
+    int orders = 10;           ///< random orders of its triangles
+    std::vector<double> scales{1e-4, 1e-2, 1e2, 1e4};
+};
 
 struct Variation {
     enum class Kind { none, transform, order, scale };
@@ -26,11 +33,12 @@ struct Variation {
 };
 
 /// First the scene as it is, then at most `most` of each kind.
-std::vector<Variation> variations(const config::Stability& config, std::int64_t seed, int most);
+std::vector<Variation> variations(const Selection& selection, std::int64_t seed, int most);
 
 /// The scene varied. New coordinates are computed in double precision and rounded once. A transform
 /// is a rotation about the origin and then a shift by up to the scene's extent. With another order,
-/// points keep the triangles they lie on, by their new ids, and `essential` is dropped.
+/// points keep the triangles they lie on, by their new ids, and `essential` is dropped. With new
+/// coordinates it is no longer `as_built`.
 Scene vary(const Scene& scene, const Variation& variation);
 
 }  // namespace experiments::stability

@@ -4,7 +4,7 @@
 //     layout(...) ...                              // the structure's parameters
 //     vec3 beam_point(uint point) { ... }          // hooks: world position, primitive id,
 //     uint beam_primitive(uint point) { ... }
-//     void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint primitive) {...}
+//     CornerTriangle beam_triangle(uint index) { ... }
 //     void beam_walk() { ... beam_meets_box(...); beam_test_triangles(...); }
 //     void main() { beam_light = ...; TileAnswer answer = answer_tile(tile, origin, size); ... }
 //
@@ -19,18 +19,20 @@
 // device.glsl first.
 #ifndef SHADOWS_BEAM_BEAM_GLSL
 #define SHADOWS_BEAM_BEAM_GLSL
+#include "structures/geometry/corner_triangles.glsl"
 #include "shadows/occlusion.glsl"
 
 vec3 beam_light;  // position, or direction towards a directional light
 
 #include "shadows/beam/points.glsl"
+#include "shadows/beam/edges.glsl"
 #include "shadows/beam/group.glsl"
 #include "shadows/beam/candidate.glsl"
 
 // Hooks.
 vec3 beam_point(uint point);
 uint beam_primitive(uint point);
-void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint primitive);
+CornerTriangle beam_triangle(uint index);
 // Walks the structure with `beam`; stops early when group_finished() or out of steps.
 void beam_walk();
 
@@ -82,9 +84,7 @@ bool beam_take_triangles(uint count) {
 
 // Exact test of one triangle against the lane's `slots`, not 0.
 void test_exactly(uint index, uint slots) {
-    vec3 a, b, c;
-    uint primitive;
-    beam_triangle(index, a, b, c, primitive);
+    const CornerTriangle t = beam_triangle(index);
     while (true) {
         const uint k = findLSB(slots);
         slots &= slots - 1u;
@@ -94,7 +94,7 @@ void test_exactly(uint index, uint slots) {
             segment = directional_segment(p, beam_light);
         else
             segment = point_segment(p, beam_light);
-        const int hit = occludes_quickly(segment, a, b, c);
+        const int hit = occludes_quickly(segment, t.a, t.b, t.c);
         if (hit == 1) beam_occluded |= 1u << k;
         if (hit == kUnsure) beam_unsure |= 1u << k;
         ++beam_exact_tests;
@@ -107,18 +107,17 @@ void beam_test_triangles(uint index, bool used) {
     Candidate mine;
     uint verdict = kMiss;
     if (used) {
-        vec3 a, b, c;
-        uint primitive;
-        beam_triangle(index, a, b, c, primitive);
-        verdict = classify(a, b, c, beam_live, mine);
-        const bool receives = (primitive_bit(primitive) & beam_primitives) != 0;
-        mine.receiver = receives ? primitive : kNoPrimitive;
+        const CornerTriangle t = beam_triangle(index);
+        verdict = classify(t.a, t.b, t.c, beam_live, mine);
+        const bool receives = (primitive_bit(t.primitive) & beam_primitives) != 0;
+        mine.receiver = receives ? t.primitive : kNoPrimitive;
         if (verdict == kCovers && receives) verdict = kMeets;
     }
     if (subgroupAny(verdict == kCovers)) {
         beam_occluded |= beam_group;
         beam_finished = true;
-        const uint by = subgroupShuffle(index, subgroupBallotFindLSB(subgroupBallot(verdict == kCovers)));
+        const uint by =
+            subgroupShuffle(index, subgroupBallotFindLSB(subgroupBallot(verdict == kCovers)));
         if (!subgroupAny(beam_recent == by)) {
             if (beam_recent_count % kLanes == lane()) beam_recent = by;
             ++beam_recent_count;
@@ -128,16 +127,7 @@ void beam_test_triangles(uint index, bool used) {
     uvec4 candidates = subgroupBallot(verdict == kMeets);
     if (candidates.xy == uvec2(0)) return;
     while (true) {
-        uint from;
-        if (candidates.x != 0) {
-            from = findLSB(candidates.x);
-            candidates.x &= candidates.x - 1u;
-        } else if (kLanes > 32 && candidates.y != 0) {
-            from = 32 + findLSB(candidates.y);
-            candidates.y &= candidates.y - 1u;
-        } else {
-            break;
-        }
+        const uint from = take_lane(candidates);
         ++beam_steps;
         uint hit, doubtful;
         const uint index_from = subgroupShuffle(index, from);
@@ -147,6 +137,7 @@ void beam_test_triangles(uint index, bool used) {
         // The loop of the exact tests counts for all lanes, or not at all.
         if (kLoopsAreCut && subgroupAny(doubtful != 0)) beam_steps += kSlots;
         if (doubtful != 0) test_exactly(index_from, doubtful);
+        if (candidates.xy == uvec2(0)) break;
     }
     beam_live = live_sections(beam_group & ~beam_occluded);
     beam_finished = beam_live == 0;

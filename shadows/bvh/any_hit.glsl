@@ -1,31 +1,11 @@
 // Any-hit query of a wide BVH, one segment per lane.
 //
-//     BvhWalk walk = bvh_walk_begin(step_limit);
-//     bool hit = bvh_occluded(tree, segment, own_primitive, false, walk);
-//     // walk.end says why the traversal ended; only kEndFinished makes `hit == false` an answer
-//
-// Needs the constants kStackLimit and kLoopsAreCut (see query.glsl). Each stack entry is a node's
-// inner children that are still to be visited, so that the stack is no deeper than the tree.
+// The hook of shadows/tiles/lanes.glsl. Each stack entry is a node's inner children that are still to be
+// visited, so that the stack is no deeper than the tree.
 #ifndef SHADOWS_BVH_ANY_HIT_GLSL
 #define SHADOWS_BVH_ANY_HIT_GLSL
 #include "shadows/bvh/leaf_variants.glsl"
-#include "structures/bvh/wide/wide_node.glsl"
-
-const uint kEndFinished = 0u, kEndStackFull = 1u, kEndStepLimit = 2u, kEndUnsure = 3u;
-
-struct BvhView {
-    WideHeaderRef header;
-    WideChildren nodes;
-    WideTriangles triangles;
-};
-
-struct BvhWalk {
-    uint nodes;      // visited
-    uint triangles;  // tested
-    uint steps;      // loop iterations that are left
-    uint end;
-};
-BvhWalk bvh_walk_begin(uint step_limit) { return BvhWalk(0, 0, step_limit, kEndFinished); }
+#include "shadows/tiles/lanes.glsl"
 
 const uint kLaneStack = 32u;
 
@@ -68,11 +48,8 @@ bool meets(SlabTest test, uvec4 child) {
     return first <= last && child.w != kEmptyLink;
 }
 
-// With `last_resort`, whatever it takes; without, a walk that hits nothing ends as kEndUnsure if it
-// has met a triangle that double precision cannot tell.
-bool bvh_occluded(BvhView view, Segment segment, uint own_primitive, bool last_resort,
-                  inout BvhWalk walk) {
-    const WideHeader header = view.header.header;
+bool lane_occluded(Segment segment, uint own_primitive, bool last_resort, inout Walk walk) {
+    const WideHeader header = push.structure.header.header;
     if (header.node_count == 0) return false;
     const SlabTest test = slab_test(header, segment);
     uint stack[kLaneStack];
@@ -93,7 +70,7 @@ bool bvh_occluded(BvhView view, Segment segment, uint own_primitive, bool last_r
         entry &= entry - 1u;
         uint inner = 0, leaves = 0, base = 0;
         [[unroll]] for (uint slot = 0; slot < kWidth; ++slot) {
-            const uvec4 child = view.nodes.at[node * kWidth + slot];
+            const uvec4 child = push.structure.nodes.at[node * kWidth + slot];
             if (slot == 0) base = child.w;
             const uint bit = meets(test, child) ? 1u << slot : 0u;
             inner |= is_leaf(child.w) ? 0u : bit;
@@ -105,7 +82,7 @@ bool bvh_occluded(BvhView view, Segment segment, uint own_primitive, bool last_r
             while (true) {
                 if (triangle == last) {
                     if (leaves == 0) break;
-                    const uint link = view.nodes.at[node * kWidth + findLSB(leaves)].w;
+                    const uint link = push.structure.nodes.at[node * kWidth + findLSB(leaves)].w;
                     leaves &= leaves - 1u;
                     triangle = leaf_first(link);
                     last = triangle + leaf_count(link);
@@ -114,7 +91,7 @@ bool bvh_occluded(BvhView view, Segment segment, uint own_primitive, bool last_r
                 const uint loops = kLoopsAreCut ? kLanes * take_exact_loops() : 0u;
                 walk.steps -= min(walk.steps, 1u + loops);
                 ++walk.triangles;
-                const WideTriangle t = view.triangles.at[triangle++];
+                const CornerTriangle t = push.structure.triangles.at[triangle++];
                 if (t.primitive != own_primitive) {
                     const int answer = leaf_occludes(segment, t.a, t.b, t.c);
                     hit = answer == 1;

@@ -7,7 +7,7 @@
 #ifndef SHADOWS_BVH_LEAF_VARIANTS_GLSL
 #define SHADOWS_BVH_LEAF_VARIANTS_GLSL
 #include "shadows/occlusion.glsl"
-#include "shadows/bvh/query_shared.h"
+#include "shadows/bvh/leaf_shared.h"
 
 layout(constant_id = 20) const uint kLeaf = kLeafExact;
 layout(constant_id = 21) const bool kContraction = false;  // of the watertight test's edges

@@ -13,13 +13,18 @@ using structures::geometry::TriangleMesh;
 using taskpool::gpu::Recorder;
 
 std::vector<Parameter> make_parameters() {
-    const QueryConfig defaults;
+    const tiles::Limits defaults;
     std::vector<Parameter> all = tree_parameters();
     const Parameter query[] = {
         {"query", std::string("beam"), "how points walk the tree", {"beam", "packet", "lane"}},
         {"statistics", false, "count nodes and triangles per point (slower)"},
         {"stack", std::int64_t{defaults.stack}, "stack entries of a beam or packet", {}, 1, 32},
-        {"list", std::int64_t{defaults.list}, "triangles a beam collects at a time", {}, 64, 4096},
+        {"list",
+         std::int64_t{defaults.scratch},
+         "triangles a beam collects at a time",
+         {},
+         64,
+         4096},
         {"density",
          std::int64_t{defaults.density},
          "triangles per point a beam may meet",
@@ -48,10 +53,11 @@ QueryConfig query_config(const Settings& settings) {
     config.kind = kind == "lane"     ? QueryKind::lane
                   : kind == "packet" ? QueryKind::packet
                                      : QueryKind::beam;
-    config.statistics = settings.boolean("statistics");
-    config.stack = static_cast<std::uint32_t>(settings.integer("stack"));
-    config.list = static_cast<std::uint32_t>(settings.integer("list"));
-    config.density = static_cast<std::uint32_t>(settings.integer("density"));
+    tiles::Limits& limits = config.limits;
+    limits.statistics = settings.boolean("statistics");
+    limits.stack = static_cast<std::uint32_t>(settings.integer("stack"));
+    limits.scratch = static_cast<std::uint32_t>(settings.integer("list"));
+    limits.density = static_cast<std::uint32_t>(settings.integer("density"));
     const std::string& leaf = settings.text("leaf");
     config.leaf = leaf == "watertight"         ? Leaf::watertight
                   : leaf == "moeller_trumbore" ? Leaf::moeller_trumbore
@@ -114,35 +120,9 @@ Samples BvhMethod::query(const Points& points, Visibility& visible) {
     recorder.timestamp(times_, "end");
     device_.run(recorder);
     visible = query_.visibility();
-    const QueryStatus status = query_.status();
-    Samples samples{{"query_ms", times_.milliseconds("begin", "end"), "ms"},
-                    {"incomplete", double(status.incomplete)},
-                    {"deferred_points", double(status.deferred_points)}};
-    if (config_.statistics) {
-        double nodes = 0, triangles = 0;
-        std::uint32_t most = 0;
-        for (const PointCost& cost : query_.costs()) {
-            nodes += cost.nodes;
-            triangles += cost.triangles;
-            most = std::max(most, cost.nodes);
-        }
-        const double count = std::max(points.valid_count(), 1u);
-        samples.push_back({"visited_nodes_mean", nodes / count});
-        samples.push_back({"visited_nodes_max", double(most)});
-        samples.push_back({"tested_triangles_mean", triangles / count});
-        samples.push_back({"exact_tests_mean", status.exact_tests / count});
-        samples.push_back({"fp64_decisions", double(status.fp64_decisions)});
-        samples.push_back({"exact_decisions", double(status.exact_decisions)});
-        samples.push_back({"groups", double(status.groups)});
-        samples.push_back({"packet_tiles", double(status.packet_tiles)});
-    }
+    Samples samples = query_.counters(points.valid_count());
+    samples.push_back({"query_ms", times_.milliseconds("begin", "end"), "ms"});
     return samples;
-}
-
-std::vector<float> BvhMethod::heat() {
-    std::vector<float> nodes;
-    for (const PointCost& cost : query_.costs()) nodes.push_back(float(cost.nodes));
-    return nodes;
 }
 
 std::span<const MethodRow> rows() {

@@ -18,7 +18,7 @@ class BvhMethod final : public Method {
     structures::Samples build(const structures::geometry::Light& light) override;
     /// query_ms, incomplete, deferred and, with statistics, visited nodes and tested triangles.
     structures::Samples query(const Points& points, Visibility& visible) override;
-    std::vector<float> heat() override;
+    std::vector<float> heat() override { return query_.heat(); }
     bool claims_exact() const override { return config_.exact(); }
 
   private:

@@ -3,7 +3,7 @@
 // Eight lanes test a node's eight children at once (wide subgroups: several nodes). Hits among the
 // inner children become one stack entry, hits among the leaves append their triangles to a list,
 // which is worked off when the stack is empty, or when it is full or too long for a beam.
-#include "shadows/bvh/subgroup_stack.glsl"
+#include "shadows/tiles/subgroup_stack.glsl"
 
 const uint kNodesAtOnce = kLanes / kWidth;
 
@@ -13,7 +13,7 @@ struct BeamGrid {
 };
 
 BeamGrid beam_grid() {
-    const Grid grid = grid_from(push.header.header, beam_origin, beam.reach / beam_scale);
+    const Grid grid = grid_from(push.structure.header.header, beam_origin, beam.reach / beam_scale);
     BeamGrid g;
     const vec3 p = to_beam(grid.base_lower * beam_scale), q = to_beam(grid.base_upper * beam_scale);
     g.cell = to_beam(grid.cell * beam_scale);
@@ -60,21 +60,7 @@ ChildVote vote_children(bool inner, uint triangles) {
     return vote;
 }
 
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer TriangleWords {
-    uint64_t at[];
-};
-
-// A WideTriangle, read by words of 64 bits: gathers go word by word on a CPU device.
-void beam_triangle(uint index, out vec3 a, out vec3 b, out vec3 c, out uint primitive) {
-    TriangleWords words = TriangleWords(uint64_t(push.triangles));
-    vec2 pair[5];
-    [[unroll]] for (uint i = 0; i < 5; ++i)
-        pair[i] = uintBitsToFloat(unpackUint2x32(words.at[5 * index + i]));
-    a = vec3(pair[0], pair[1].x);
-    b = vec3(pair[1].y, pair[2]);
-    c = vec3(pair[3], pair[4].x);
-    primitive = floatBitsToUint(pair[4].y);
-}
+CornerTriangle beam_triangle(uint index) { return corner_triangle(push.structure.triangles, index); }
 
 void process_list(uint list, uint count) {
     subgroup_sync();
@@ -90,10 +76,10 @@ void process_list(uint list, uint count) {
 }
 
 void beam_walk() {
-    if (push.header.header.node_count == 0) return;
+    if (push.structure.header.header.node_count == 0) return;
     const BeamGrid grid = beam_grid();
-    const uint list = gl_WorkGroupID.x * kListLimit;
-    const uint list_full = min(kListLimit - kMaxLeafCount * kLanes, beam_allowance);
+    const uint list = gl_WorkGroupID.x * kScratchWords;
+    const uint list_full = min(kScratchWords - kMaxLeafCount * kLanes, beam_allowance);
     uint list_count = 0;
     uint entry = 1u;  // the root as the only child of a node that starts at 0
     stack_depth = 0;
@@ -111,7 +97,7 @@ void beam_walk() {
         uint link = kEmptyLink;
         bool hit = false;
         if (node != 0xffffffffu) {
-            const uvec4 child = push.nodes.at[node * kWidth + lane() % kWidth];
+            const uvec4 child = push.structure.nodes.at[node * kWidth + lane() % kWidth];
             link = child.w;
             hit = link != kEmptyLink && meets_child(grid, child);
         }

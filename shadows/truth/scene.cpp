@@ -32,9 +32,7 @@ double largest(const glm::vec3& v) {
 std::vector<std::uint32_t> find_casters(const TriangleMesh& mesh) {
     std::vector<std::uint32_t> casters;
     for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t)
-        if (finite(mesh.corner(t, 0)) && finite(mesh.corner(t, 1)) && finite(mesh.corner(t, 2)) &&
-            !mesh.degenerate(t))
-            casters.push_back(t);
+        if (!mesh.degenerate(t)) casters.push_back(t);
     return casters;
 }
 

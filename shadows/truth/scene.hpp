@@ -6,20 +6,21 @@
 #include <vector>
 
 #include "shadows/truth/candidates.hpp"
+#include "shadows/truth/exact.hpp"
 #include "shadows/truth/silhouette.hpp"
 #include "shadows/truth/truth.hpp"
 
 namespace shadows::truth {
 
 struct Truth::Scene {
-  public:
     Scene(const structures::geometry::TriangleMesh& mesh, const structures::geometry::Light& light);
 
     Verdict judge(const glm::vec3& p, std::uint32_t own, const glm::vec3& normal,
                   Effort& effort) const;
     bool shadowed(const glm::vec3& p, std::uint32_t own) const;
     double epsilon(const glm::vec3& p) const;
-    /// Throws std::invalid_argument if p is not finite or `own` no triangle, naming `what`.
+    /// Throws std::invalid_argument if p is not finite or `own` no triangle; `index` names the
+    /// point in the message.
     void check(const glm::vec3& p, std::uint32_t own, std::size_t index) const;
 
   private:
@@ -30,7 +31,6 @@ struct Truth::Scene {
         std::int8_t side;      ///< Silhouette::side
         std::uint8_t outline;  ///< bit k: edge k has a multiplicity
     };
-    struct Search;
 
     Scene(const structures::geometry::TriangleMesh& mesh, const structures::geometry::Light& light,
           const std::vector<std::uint32_t>& casters);

@@ -5,11 +5,16 @@
 #include <bit>
 #include <numeric>
 
+#include "shadows/truth/exact.hpp"
+
 namespace shadows::truth {
 namespace {
 
 using structures::geometry::Light;
 using structures::geometry::TriangleMesh;
+
+/// The edges of a triangle that casts nothing.
+constexpr std::uint32_t kNoEdge = 0xffffffffu;
 
 /// The bits of a position; -0 counts as 0.
 std::array<std::uint32_t, 3> key_of(const glm::vec3& v) {
@@ -48,13 +53,14 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const Light& light,
       runs_(mesh.triangle_count()) {
     const std::vector<std::uint32_t> welded = weld(mesh.positions);
     std::vector<Use> uses;
+    Signs signs;
     uses.reserve(3 * casters.size());
     for (const std::uint32_t t : casters) {
         const glm::vec3 a = mesh.corner(t, 0), b = mesh.corner(t, 1), c = mesh.corner(t, 2);
         // det(a - L, b - L, c - L) = N . (a - L).
         const int sign = light.type == Light::Type::directional
-                             ? orientation_towards(b, c, light.vector, a, signs_)
-                             : orientation(a, b, c, light.vector, signs_);
+                             ? orientation_towards(b, c, light.vector, a, signs)
+                             : orientation(a, b, c, light.vector, signs);
         sides_[t] = static_cast<std::int8_t>(-sign);
         for (std::uint8_t k = 0; k < 3; ++k) {
             const std::uint64_t from = welded[mesh.triangles[t][k]];

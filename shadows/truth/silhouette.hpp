@@ -18,7 +18,6 @@
 #include <span>
 #include <vector>
 
-#include "shadows/truth/exact.hpp"
 #include "structures/geometry/light.hpp"
 #include "structures/geometry/triangle_mesh.hpp"
 
@@ -26,7 +25,6 @@ namespace shadows::truth {
 
 class Silhouette {
   public:
-    Silhouette() = default;
     /// Over the triangles `casters` of `mesh`; others contribute nothing.
     Silhouette(const structures::geometry::TriangleMesh& mesh,
                const structures::geometry::Light& light, std::span<const std::uint32_t> casters);
@@ -39,16 +37,12 @@ class Silhouette {
     int multiplicity(std::uint32_t edge) const { return multiplicities_[edge]; }
     /// Multiplicity of edge k of `triangle` once the triangle itself is taken away.
     int multiplicity_of_others(std::uint32_t triangle, int k) const;
-    const Signs& signs() const { return signs_; }
 
   private:
     std::vector<std::int8_t> sides_;                   // of all triangles, 0 if no caster
-    std::vector<std::array<std::uint32_t, 3>> edges_;  // kNoEdge if no caster
+    std::vector<std::array<std::uint32_t, 3>> edges_;  // of no edge if no caster
     std::vector<std::array<std::int8_t, 3>> runs_;     // +1: along the edge, -1: against it
     std::vector<int> multiplicities_;
-    Signs signs_;
 };
-
-inline constexpr std::uint32_t kNoEdge = 0xffffffffu;
 
 }  // namespace shadows::truth

@@ -78,9 +78,9 @@ struct JudgeOptions {
 class Truth {
   public:
     /// Takes in the scene: welds edges, finds their multiplicities as seen from the light, builds
-    /// the candidate tree. `mesh` must outlive this. Degenerate triangles and those with a corner
-    /// that is not finite cast no shadow. Throws std::invalid_argument if the light is not finite,
-    /// or a directional one is 0.
+    /// the candidate tree. `mesh` must outlive this. Degenerate triangles, among them those with a
+    /// corner that is not finite, cast no shadow. Throws std::invalid_argument if the light is not
+    /// finite, or a directional one is 0.
     Truth(const structures::geometry::TriangleMesh& mesh, const structures::geometry::Light& light);
     ~Truth();
 

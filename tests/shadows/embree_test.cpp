@@ -4,6 +4,7 @@
 #include "tests/shadows/brute_force.hpp"
 #include "tests/structures/meshes.hpp"
 #include "tests/support/gpu_fixture.hpp"
+#include "tests/support/points.hpp"
 
 namespace shadows::embree {
 namespace {

@@ -13,6 +13,7 @@
 #include "tests/structures/meshes.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/occlusion.hpp"
+#include "tests/support/points.hpp"
 
 namespace {
 
@@ -52,20 +53,10 @@ struct Result {
 
 Result run(const Scene& scene, Given given) {
     given["statistics"] = true;
-    const auto width = static_cast<std::uint32_t>(kTileSide);
-    const std::size_t count = (scene.points.size() + kTilePoints - 1) / kTilePoints * kTilePoints;
-    PointArrays arrays;
-    for (std::vector<float>* plane : {&arrays.x, &arrays.y, &arrays.z}) plane->resize(count);
-    arrays.primitive.assign(count, kNoPrimitive);
-    arrays.normal.assign(count, glm::vec3(0, 0, 1));
-    for (std::size_t i = 0; i < scene.points.size(); ++i) {
-        arrays.x[i] = scene.points[i].x;
-        arrays.y[i] = scene.points[i].y;
-        arrays.z[i] = scene.points[i].z;
-        arrays.primitive[i] = 0xfffffffeu;
-    }
-    const Points points(tests::device(), arrays, width,
-                        static_cast<std::uint32_t>(count / kTileSide));
+    const auto height =
+        static_cast<std::uint32_t>((scene.points.size() + kTileSide - 1) / kTileSide);
+    const Points points(tests::device(), tests::free_points(scene.points, kTileSide, height),
+                        kTileSide, height);
     const std::unique_ptr<Method> bvh = method(given);
     bvh->prepare(scene.mesh);
     bvh->build(scene.light);
@@ -87,7 +78,7 @@ Result check(const Scene& scene) {
         std::size_t wrong = 0, first = 0;
         for (std::size_t i = 0; i < scene.points.size(); ++i) {
             const bool lit =
-                !tests::occluded(scene.points[i], 0xfffffffeu, scene.light, scene.mesh);
+                !tests::occluded(scene.points[i], kNoReceiver, scene.light, scene.mesh);
             if (lit == last.lit[i]) continue;
             if (wrong++ == 0) first = i;
         }

@@ -3,9 +3,9 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/shadows/brute_force.hpp"
 #include "tests/structures/meshes.hpp"
 #include "tests/support/gpu_fixture.hpp"
+#include "tests/support/points.hpp"
 
 namespace shadows {
 namespace {

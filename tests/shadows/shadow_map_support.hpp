@@ -10,6 +10,7 @@
 #include "structures/geometry/triangle_mesh.hpp"
 #include "tests/structures/meshes.hpp"
 #include "tests/support/occlusion.hpp"
+#include "tests/support/points.hpp"
 
 namespace tests::shadow_map {
 
@@ -28,51 +29,6 @@ struct Scene {
     PointArrays points;
 };
 
-inline glm::vec3 position(const PointArrays& points, std::size_t i) {
-    return {points.x[i], points.y[i], points.z[i]};
-}
-
-/// An image without points.
-inline PointArrays no_points() {
-    constexpr std::size_t kCount = std::size_t{kSide} * kSide;
-    PointArrays points;
-    for (std::vector<float>* plane : {&points.x, &points.y, &points.z}) plane->assign(kCount, 0);
-    points.primitive.assign(kCount, kNoPrimitive);
-    points.normal.assign(kCount, {0, 0, 1});
-    return points;
-}
-
-inline void set_point(PointArrays& points, std::size_t i, glm::vec3 p, std::uint32_t primitive) {
-    points.x[i] = p.x;
-    points.y[i] = p.y;
-    points.z[i] = p.z;
-    points.primitive[i] = primitive;
-}
-
-inline PointArrays free_points(const std::vector<glm::vec3>& places) {
-    PointArrays points = no_points();
-    for (std::size_t i = 0; i < places.size(); ++i) set_point(points, i, places[i], kNoReceiver);
-    return points;
-}
-
-/// Points at random places of random triangles; every tenth stays without geometry.
-inline PointArrays random_points(const TriangleMesh& mesh, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> unit(0, 1);
-    PointArrays points = no_points();
-    for (std::size_t i = 0; i < points.x.size(); ++i) {
-        const auto id = static_cast<std::uint32_t>(random() % mesh.triangle_count());
-        float u = unit(random), v = unit(random);
-        if (random() % 10 == 0) continue;
-        if (u + v > 1) u = 1 - u, v = 1 - v;
-        const glm::vec3 a = mesh.corner(id, 0), ab = mesh.corner(id, 1) - a,
-                        ac = mesh.corner(id, 2) - a;
-        set_point(points, i, a + u * ab + v * ac, id);
-        points.normal[i] = glm::normalize(glm::cross(ab, ac));
-    }
-    return points;
-}
-
 /// A square floor of half width `half` at height `y`, in 2 * n * n triangles.
 inline void add_floor(TriangleMesh& mesh, float half, float y, int n = 1) {
     for (int i = 0; i < n; ++i)
@@ -89,7 +45,7 @@ inline Scene box_over_floor(std::uint32_t seed = 1) {
     add_floor(scene.mesh, 10, 0, 8);
     add_box(scene.mesh, {-1, 1, -2}, {2, 2.5f, 1});
     scene.light.vector = {0.3f, 9, -0.7f};
-    scene.points = random_points(scene.mesh, seed);
+    scene.points = random_points(scene.mesh, kSide, kSide, seed);
     return scene;
 }
 
@@ -100,7 +56,7 @@ inline Scene generated(const char* name, std::int64_t triangles, std::uint32_t s
             row.parameters(), {{"triangles", structures::Value(triangles)}});
         const experiments::scenes::GeneratedScene made = row.generate(settings);
         Scene scene{made.mesh, made.light, {}};
-        scene.points = random_points(scene.mesh, seed);
+        scene.points = random_points(scene.mesh, kSide, kSide, seed);
         return scene;
     }
     throw std::invalid_argument(name);

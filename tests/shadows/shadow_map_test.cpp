@@ -139,7 +139,7 @@ TEST_F(ShadowMapTest, ErrorFallsWithResolution) {
 TEST_F(ShadowMapTest, EachBiasModeHidesAcne) {
     Scene scene;
     add_floor(scene.mesh, 10, 0, 3);
-    scene.points = random_points(scene.mesh, 3);
+    scene.points = tests::random_points(scene.mesh, kSide, kSide, 3);
     for (const Light& light :
          {Light{Light::Type::point, {1.3f, 2.1f, -0.4f}}, Light{kDirectional, {1.7f, -1, 0.6f}}}) {
         SCOPED_TRACE(int(light.type));
@@ -182,7 +182,7 @@ TEST_F(ShadowMapTest, FacesMeetWithoutSeams) {
     Scene scene;
     scene.light.vector = {0.1f, 0.2f, 0.3f};
     scene.mesh = tests::sphere(40, 80, scene.light.vector, 2);
-    scene.points = free_points(places);
+    scene.points = tests::free_points(places, kSide, kSide);
     for (BiasMode mode : {BiasMode::constant, BiasMode::slope, BiasMode::receiver_plane}) {
         const Answer answer = ask(scene, {512, mode, 1});
         EXPECT_EQ(answer.faces, 6u);
@@ -201,7 +201,7 @@ TEST_F(ShadowMapTest, FacesMeetWithoutSeams) {
 TEST_F(ShadowMapTest, FacesWithoutCastersAreSkipped) {
     Scene scene;
     add_floor(scene.mesh, 1, 0);
-    scene.points = random_points(scene.mesh, 1);
+    scene.points = tests::random_points(scene.mesh, kSide, kSide, 1);
     scene.light.vector = {0, 5, 0};
     const Answer one = ask(scene);
     EXPECT_EQ(one.faces, 1u);
@@ -233,7 +233,7 @@ TEST_F(ShadowMapTest, ScalingByPowersOfTwoChangesNoBit) {
 
 TEST_F(ShadowMapTest, EmptySceneShadowsNothing) {
     Scene scene;
-    scene.points = free_points({{0, 0, 0}, {1, 2, 3}});
+    scene.points = tests::free_points({{0, 0, 0}, {1, 2, 3}}, kSide, kSide);
     for (const Light& light : {Light{}, Light{kDirectional, {0, -1, 0}}}) {
         const Answer answer = ask(with_light(scene, light));
         EXPECT_EQ(answer.faces, 0u);
@@ -250,12 +250,13 @@ TEST_F(ShadowMapTest, EmptySceneShadowsNothing) {
 TEST_F(ShadowMapTest, OneTriangle) {
     Scene scene;
     tests::add_triangle(scene.mesh, {0, 1, 0}, {2, 1, 0}, {0, 1, 2});
-    scene.points = free_points({{0.5f, 0, 0.5f},
-                                {0.5f, 2, 0.5f},
-                                {-1, 0, -1},
-                                {0.5f, -1e6f, 0.5f},
-                                {1.5f, 0, 1.5f},
-                                {0.5f, 1e6f, 0.5f}});
+    scene.points = tests::free_points({{0.5f, 0, 0.5f},
+                                       {0.5f, 2, 0.5f},
+                                       {-1, 0, -1},
+                                       {0.5f, -1e6f, 0.5f},
+                                       {1.5f, 0, 1.5f},
+                                       {0.5f, 1e6f, 0.5f}},
+                                      kSide, kSide);
     scene.light = {kDirectional, {0, -1, 0}};
     for (BiasMode mode : {BiasMode::constant, BiasMode::slope, BiasMode::receiver_plane})
         EXPECT_EQ(ask(scene, {512, mode, 1}).visible.words[0], ~0b001001u) << int(mode);

@@ -35,7 +35,7 @@ TriangleMesh soup(std::uint32_t seed, std::size_t count, float size, glm::vec3 o
 struct Built {
     WideHeader header;
     std::vector<WideChild> nodes;
-    std::vector<WideTriangle> triangles;
+    std::vector<structures::geometry::CornerTriangle> triangles;
     std::uint32_t launches = 1;
 };
 

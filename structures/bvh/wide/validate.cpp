@@ -9,7 +9,7 @@ namespace {
 struct Walk {
     const WideHeader& header;
     const std::vector<WideChild>& nodes;
-    const std::vector<WideTriangle>& triangles;
+    const std::vector<geometry::CornerTriangle>& triangles;
     std::vector<std::string> violations;
     std::vector<std::uint32_t> node_visits, triangle_visits;
 
@@ -111,7 +111,7 @@ struct Walk {
 }  // namespace
 
 std::vector<std::string> validate(const WideHeader& header, const std::vector<WideChild>& nodes,
-                                  const std::vector<WideTriangle>& triangles,
+                                  const std::vector<geometry::CornerTriangle>& triangles,
                                   const std::vector<std::uint32_t>& order,
                                   const geometry::TriangleMesh& mesh) {
     Walk walk{header, nodes, triangles, {}, {}, {}};
@@ -119,7 +119,7 @@ std::vector<std::string> validate(const WideHeader& header, const std::vector<Wi
     if (triangles.size() != order.size())
         walk.report("{} triangles for a leaf order of {}", triangles.size(), order.size());
     for (std::size_t i = 0; i < std::min(triangles.size(), order.size()); ++i) {
-        const WideTriangle& t = triangles[i];
+        const geometry::CornerTriangle& t = triangles[i];
         if (t.primitive != order[i] || t.a != mesh.corner(order[i], 0) ||
             t.b != mesh.corner(order[i], 1) || t.c != mesh.corner(order[i], 2))
             walk.report("triangle {} is not primitive {}", i, order[i]);

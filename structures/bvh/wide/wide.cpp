@@ -10,6 +10,7 @@ std::span<const taskpool::gpu::Shader> structures_bvh_wide_shaders();
 namespace structures::bvh::wide {
 namespace {
 
+using geometry::CornerTriangle;
 using taskpool::gpu::Buffer;
 using taskpool::gpu::Kernel;
 using taskpool::gpu::Recorder;
@@ -17,11 +18,6 @@ using taskpool::gpu::Recorder;
 struct BuildPush {
     std::uint64_t binary, nodes, header, items, levels, chunks;
     std::uint32_t level;
-};
-
-struct GatherPush {
-    std::uint64_t order, positions, corners, triangles;
-    std::uint32_t count, triangle_count;
 };
 
 Kernel kernel(taskpool::gpu::Device& device, const char* name) {
@@ -44,7 +40,7 @@ std::uint64_t max_wide_nodes(const Capacity& capacity) {
 
 std::size_t WideBuilder::tree_bytes(const Capacity& capacity) {
     return max_wide_nodes(capacity) * kWidth * sizeof(WideChild) +
-           std::size_t(capacity.triangles) * sizeof(WideTriangle) + sizeof(WideHeader);
+           std::size_t(capacity.triangles) * sizeof(CornerTriangle) + sizeof(WideHeader);
 }
 
 std::size_t WideBuilder::scratch_bytes(const Capacity& capacity) {
@@ -58,7 +54,7 @@ WideBuilder::WideBuilder(taskpool::gpu::Device& device)
       open_(kernel(device, "open.comp")),
       number_(kernel(device, "number.comp")),
       link_(kernel(device, "link.comp")),
-      gather_(kernel(device, "triangles.comp")) {}
+      gather_(device) {}
 
 void WideBuilder::prepare(const Capacity& capacity) {
     const std::uint64_t nodes = max_wide_nodes(capacity);
@@ -69,7 +65,7 @@ void WideBuilder::prepare(const Capacity& capacity) {
                         capacity.triangles, nodes, kMaxNodes));
     header_ = Buffer(device_, sizeof(WideHeader), "wide BVH header");
     nodes_ = Buffer(device_, nodes * kWidth * sizeof(WideChild), "wide BVH nodes");
-    triangles_ = Buffer(device_, std::size_t(capacity.triangles) * sizeof(WideTriangle),
+    triangles_ = Buffer(device_, std::size_t(capacity.triangles) * sizeof(CornerTriangle),
                         "wide BVH triangles");
     items_ = Buffer(device_, nodes * sizeof(WideItem), "wide BVH items");
     levels_ = Buffer(device_, (kLevels + 1) * sizeof(WideLevel), "wide BVH levels");
@@ -87,12 +83,8 @@ void WideBuilder::record(Recorder& recorder, const BinaryTree& binary) {
                          0};
     recorder.dispatch(begin_, push, 1);
     recorder.barrier();
-    if (binary.order_count > 0)
-        recorder.dispatch(
-            gather_,
-            GatherPush{binary.order, binary.positions, binary.corners, triangles_.address(),
-                       binary.order_count, binary.primitive_count},
-            std::min(binary.order_count / 1024 + 1, 8192u));
+    gather_.record(recorder, {binary.order, binary.positions, binary.corners, triangles_.address(),
+                              binary.order_count, binary.primitive_count});
     recorder.barrier();
     record_levels(recorder, binary);
 }
@@ -136,8 +128,8 @@ std::vector<WideChild> WideBuilder::read_nodes() const {
     return taskpool::gpu::read<WideChild>(nodes_, std::size_t(header().node_count) * kWidth);
 }
 
-std::vector<WideTriangle> WideBuilder::read_triangles() const {
-    return taskpool::gpu::read<WideTriangle>(triangles_, order_count_);
+std::vector<CornerTriangle> WideBuilder::read_triangles() const {
+    return taskpool::gpu::read<CornerTriangle>(triangles_, order_count_);
 }
 
 }  // namespace structures::bvh::wide

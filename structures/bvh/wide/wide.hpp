@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "structures/bvh/wide/wide_shared.h"
+#include "structures/geometry/gather_triangles.hpp"
 #include "structures/geometry/triangle_mesh.hpp"
 #include "taskpool/gpu/recorder.hpp"
 
@@ -72,13 +73,14 @@ class WideBuilder {
 
     /// The finished tree, read back.
     std::vector<WideChild> read_nodes() const;
-    std::vector<WideTriangle> read_triangles() const;
+    std::vector<geometry::CornerTriangle> read_triangles() const;
 
   private:
     void record_levels(taskpool::gpu::Recorder& recorder, const BinaryTree& binary);
 
     taskpool::gpu::Device& device_;
-    taskpool::gpu::Kernel begin_, open_, number_, link_, gather_;
+    taskpool::gpu::Kernel begin_, open_, number_, link_;
+    geometry::GatherTriangles gather_;
     taskpool::gpu::Buffer header_, nodes_, triangles_, items_, levels_, chunks_;
     std::uint32_t order_count_ = 0;
 };
@@ -87,7 +89,7 @@ class WideBuilder {
 /// exactly one leaf, every node reached once, children inside their boxes, empty slots last. One
 /// line per violation.
 std::vector<std::string> validate(const WideHeader& header, const std::vector<WideChild>& nodes,
-                                  const std::vector<WideTriangle>& triangles,
+                                  const std::vector<geometry::CornerTriangle>& triangles,
                                   const std::vector<std::uint32_t>& order,
                                   const geometry::TriangleMesh& mesh);
 

@@ -55,14 +55,6 @@ struct WideHeader {
     uint depth;       // levels of nodes
 };
 
-// A triangle of the leaves, world space.
-struct WideTriangle {
-    vec3 a;
-    vec3 b;
-    vec3 c;
-    uint primitive;
-};
-
 // What becomes a node: a node of the binary tree, or (count > 0) a part of a large leaf.
 struct WideItem {
     uint node;
@@ -84,7 +76,6 @@ GROVE_CONSTANT uint kChunk = 64u;
 #ifdef __cplusplus
 static_assert(sizeof(WideChild) == 16);
 static_assert(sizeof(WideHeader) == 48 && offsetof(WideHeader, cell) == 16);
-static_assert(sizeof(WideTriangle) == 40 && offsetof(WideTriangle, primitive) == 36);
 static_assert(sizeof(WideItem) == 12 && sizeof(WideLevel) == 20);
 }  // namespace structures::bvh::wide
 #endif

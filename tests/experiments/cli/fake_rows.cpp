@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <stdexcept>
+#include <utility>
 
 namespace tests {
 namespace {
@@ -15,7 +16,10 @@ const Parameter kMethodParameters[] = {
     {"width", std::int64_t{8}, "a number to sweep", {}, 1, 64},
     {"scale", 1.0, "a factor of the times", {}, 0, 1000},
     {"flip", std::int64_t{0}, "answer this many points wrongly", {}, 0, 1e6},
-    {"fail", std::string("never"), "where to throw", {"never", "prepare", "build", "query", "nan"}},
+    {"fail",
+     std::string("never"),
+     "where to throw, or to answer too few points",
+     {"never", "create again", "prepare", "build", "query", "size"}},
     {"kill_at", std::int64_t{0}, "kill the process at this query", {}, 0, 1e6},
     {"heat", false, "pretend to have statistics"},
     {"resolution", std::int64_t{8}, "a number that shares its name with a list", {}, 1, 64},
@@ -34,6 +38,7 @@ class Stripes : public shadows::Method {
     }
     Samples query(const shadows::Points& points, shadows::Visibility& visible) override {
         fail_at("query");
+        fail_at("create again");
         if (++queries_ == settings_.integer("kill_at")) std::raise(SIGKILL);
         visible.words.assign(points.count() / 32, 0);
         for (std::size_t w = 0; w < visible.words.size(); ++w)
@@ -44,6 +49,7 @@ class Stripes : public shadows::Method {
             visible.words[i / 32] ^= 1u << (i % 32);
             --left;
         }
+        if (settings_.text("fail") == "size") visible.words.pop_back();
         if (settings_.boolean("heat")) heat_.assign(points.count(), 3.0f);
         return {{"query_ms", settings_.real("scale") * (10 + double(queries_ % 3)), "ms"}};
     }
@@ -60,7 +66,11 @@ class Stripes : public shadows::Method {
     std::vector<float> heat_;
 };
 
+/// "create again" fails in a query first, and then whenever there was such an object before.
 std::unique_ptr<shadows::Method> create_method(Device&, const Settings& settings) {
+    static bool before = false;
+    if (settings.text("fail") == "create again" && std::exchange(before, true))
+        throw std::runtime_error("broken on purpose in create");
     return std::make_unique<Stripes>(settings);
 }
 std::span<const Parameter> method_parameters() { return kMethodParameters; }

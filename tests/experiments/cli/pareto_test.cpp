@@ -1,6 +1,7 @@
 // Run time against error: the front by brute force, labels that keep apart, awkward numbers.
 #include "experiments/report/pareto.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -52,8 +53,9 @@ TEST(Pareto, TheFrontIsWhatNothingBeats) {
 TEST(Pareto, OnlyJudgedResultsCount) {
     ResultSummary unjudged{"scene", "method", "x", {{"total_ms", "ms", exactly(3)}}};
     EXPECT_TRUE(find_tradeoffs({{unjudged}}).empty());
-    EXPECT_EQ(pareto_csv({{unjudged}}), "");
-    EXPECT_EQ(pareto_csv({{unjudged, result("a,b", 2, 0.5)}}),
+    EXPECT_EQ(pareto_csv({}), "");
+    const std::vector<ResultSummary> results{unjudged, result("a,b", 2, 0.5)};
+    EXPECT_EQ(pareto_csv(find_tradeoffs(results)),
               "scene,method,variant,total_ms,errors_per_million,false_lit,false_shadowed,points,"
               "claims_exact,on_front\nscene,method,\"a,b\",2,0.5,0,0,0,0,1\n");
 }
@@ -68,7 +70,7 @@ TEST(Pareto, DrawsAwkwardNumbers) {
     for (const auto& points : kCases) {
         std::vector<ResultSummary> results;
         for (const auto& [milliseconds, errors] : points)
-            results.push_back(result("<" + std::to_string(results.size()), milliseconds, errors));
+            results.push_back(result(fmt::format("<{}", results.size()), milliseconds, errors));
         const std::string svg = pareto_chart("title", find_tradeoffs(results));
         EXPECT_EQ(svg.find("nan"), std::string::npos) << svg;
         EXPECT_EQ(svg.find("inf"), std::string::npos) << svg;

@@ -19,7 +19,8 @@ class StabilityCli : public CliTest {
                    "orders = 1\nscales = [100]\n" +
                        keys + rest);
     }
-    nlohmann::json metrics(const char* file, const std::string& test, const std::string& method) {
+    nlohmann::json metrics(const std::string& file, const std::string& test,
+                           const std::string& method) {
         const auto summary = json(file);
         for (const auto& result : summary.at("results"))
             if (result.at("scene") == test && result.at("method") == method)
@@ -73,14 +74,25 @@ TEST_F(StabilityCli, AMethodMayFailUnlessItClaimsToBeExact) {
 }
 
 TEST_F(StabilityCli, ErrorsOfAMethodAreCounted) {
-    config("", "[[method]]\nname = \"stripes\"\nfail = \"query\"\n[[method]]\nname = \"rival\"\n");
-    const Outcome run = fake("run s.toml --out r");
-    EXPECT_EQ(run.code, 0) << run.err;
-    EXPECT_THAT(run.err, HasSubstr("broken on purpose in query"));
-    EXPECT_EQ(
-        metrics("r/summary.json", "01_quad_diagonal", "stripes").at("exceptions").at("median"), 8);
-    EXPECT_EQ(metrics("r/summary.json", "01_quad_diagonal", "rival").at("exceptions").at("median"),
-              0);
+    config("", "[[method]]\nname = \"stripes\"\n[[method]]\nname = \"rival\"\n");
+    const std::pair<const char*, const char*> kCases[] = {
+        {"query", "broken on purpose in query"},
+        {"create again", "broken on purpose in create again"},
+        {"size", "words of answers"}};
+    for (const auto& [place, message] : kCases) {
+        const std::string out = fmt::format("r {}", place);
+        const Outcome run =
+            fake(fmt::format("run s.toml --out '{0}' --set 'method.0.fail=\"{1}\"'", out, place));
+        EXPECT_EQ(run.code, 0) << run.err;
+        EXPECT_THAT(run.err, HasSubstr(message));
+        for (const char* test : {"01_quad_diagonal", "04_shared_edge"}) {
+            const auto count = [&](const char* method) {
+                return metrics(out + "/summary.json", test, method).at("exceptions").at("median");
+            };
+            EXPECT_EQ(count("stripes"), 8) << place;
+            EXPECT_EQ(count("rival"), 0) << place;
+        }
+    }
 }
 
 TEST_F(StabilityCli, AKilledRunGoesOn) {
@@ -101,6 +113,8 @@ TEST_F(StabilityCli, BadConfigs) {
     expect_error(fake("run s.toml"), 2, {"unknown key 'repeat'"});
     config("", std::string(kStripes) + "[[scene]]\ngenerator = \"spheres\"\n");
     expect_error(fake("run s.toml"), 2, {"s.toml:", "scenes of its own"});
+    config("truth = true\n", kStripes);
+    expect_error(fake("run s.toml"), 2, {"unknown key 'truth'"});
     config("", kStripes);
     for (const char* bad : {"tests=[29]", "tests=[]", "tests=4", "tests=[\"a\"]", "scales=[0]",
                             "scales=[-1]", "scales=1", "transforms=-1", "orders=1.5"})

@@ -1,5 +1,5 @@
 // The matrix of tests and methods.
-#include "experiments/stability/matrix.hpp"
+#include "experiments/measure/stability_matrix.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,20 +7,19 @@
 
 namespace {
 
-using namespace experiments::stability;
-using experiments::measure::Row;
+using namespace experiments::measure;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-std::vector<experiments::measure::ResultSummary> results() {
+std::vector<ResultSummary> results() {
     std::vector<Row> rows;
     const auto add = [&](const char* test, const char* method, structures::Samples samples) {
         for (const structures::Sample& sample : samples)
             rows.push_back({{test, method, "default", 0, 0}, sample});
     };
     add("02_b", "good", {{"stability_passed", 1}, {"instances", 7}, {"claims_exact", 1}});
-    add("02_b", experiments::measure::kSceneRows, {{"points", 5}});
+    add("02_b", kSceneRows, {{"points", 5}});
     add("01_a", "good",
         {{"stability_passed", 0},
          {"instances", 7},
@@ -37,7 +36,7 @@ std::vector<experiments::measure::ResultSummary> results() {
          {"instances_failed", 7},
          {"claims_exact", 0},
          {"unexpected", 4}});
-    return experiments::measure::summarise(rows);
+    return summarise(rows);
 }
 
 TEST(Matrix, RowsAndColumns) {
@@ -61,7 +60,7 @@ TEST(Matrix, TextForTheTerminal) {
 }
 
 TEST(Matrix, OnlyBrokenClaimsFailTheRun) {
-    const auto lines = broken_claims(results());
+    const auto lines = broken_stability_claims(results());
     ASSERT_EQ(lines.size(), 1u);
     EXPECT_THAT(lines[0], HasSubstr("01_a, good"));
     EXPECT_THAT(lines[0], HasSubstr("(0.100000001, -2, 3)"));

@@ -51,7 +51,7 @@ TEST_P(EveryTest, JudgeFindsWhatGeometryExpects) {
             EXPECT_TRUE(point.receiver == shadows::kNoReceiver ||
                         point.receiver < scene.mesh.triangle_count());
         try {
-            const JudgedScene judged = judge(scene, true);
+            const JudgedScene judged = judge(scene);
             for (std::size_t i = 0; i < scene.points.size(); ++i) {
                 const auto verdict = judged.verdicts.points[place_in_image(i)];
                 EXPECT_FALSE(verdict.facing_away());
@@ -70,12 +70,11 @@ TEST_P(EveryTest, JudgeFindsWhatGeometryExpects) {
 }
 
 TEST_P(EveryTest, VariationsKeepTheAnswers) {
-    const experiments::config::Stability few{{}, 2, 1, {1e-4, 1e4}};
+    const Selection few{{}, 2, 1, {1e-4, 1e4}};
     for_each_scene([&](const Scene& scene) {
         for (const Variation& variation : variations(few, 1, GetParam().most)) {
             try {
-                const JudgedScene judged =
-                    judge(vary(scene, variation), variation.keeps_coordinates());
+                const JudgedScene judged = judge(vary(scene, variation));
                 EXPECT_EQ(judged.scene.points.size(), scene.points.size());
             } catch (const std::runtime_error& error) {
                 ADD_FAILURE() << variation.label() << ": " << error.what();
@@ -88,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(StressSuite, EveryTest, testing::ValuesIn(suite().begin
                          [](const auto& test) { return "T" + test.param.label(); });
 
 TEST(Variations, KindsAndLimits) {
-    const experiments::config::Stability config{{}, 3, 2, {0.5, 2, 4}};
+    const Selection config{{}, 3, 2, {0.5, 2, 4}};
     EXPECT_EQ(variations(config, 1, 1000).size(), 1u + 3 + 2 + 3);
     EXPECT_EQ(variations(config, 1, 1).size(), 4u);
     EXPECT_EQ(variations(config, 1, 0).size(), 1u);
@@ -116,7 +115,7 @@ TEST(Variations, AnOrderKeepsTheTrianglesThatPointsLieOn) {
               scene.mesh.triangles[scene.points[0].receiver]);
     EXPECT_EQ(varied.points[1].receiver, shadows::kNoReceiver);
     EXPECT_EQ(varied.essential, 0u);
-    EXPECT_TRUE(varied.exact);
+    EXPECT_TRUE(varied.as_built);
 }
 
 TEST(Variations, ATransformIsRigid) {
@@ -135,7 +134,7 @@ TEST(Variations, ATransformIsRigid) {
         };
         EXPECT_NEAR(towards(varied), towards(scene), 1e-4);
         EXPECT_NE(varied.points[0].position, scene.points[0].position);
-        EXPECT_FALSE(varied.exact);
+        EXPECT_FALSE(varied.as_built);
     }
 }
 
@@ -152,21 +151,21 @@ TEST(Judge, ContradictionIsAnError) {
     Scene scene = small_scene(point_light({1, 9, 2}));
     scene.essential = 0;
     ask(scene, {0.5, 0.25, 0.5}, Expected::shadowed);
-    EXPECT_NO_THROW(judge(scene, true));
+    EXPECT_NO_THROW(judge(scene));
     scene.points.back().expected = Expected::lit;
-    EXPECT_THROW(judge(scene, true), std::runtime_error);
+    EXPECT_THROW(judge(scene), std::runtime_error);
     // The box counts, for it casts: declaring only the floor essential is wrong.
     scene.points.pop_back();
     ask(scene, {0.5, 0.25, 0.5}, Expected::unsaid);
     scene.essential = 2;
-    EXPECT_THROW(judge(scene, true), std::runtime_error);
+    EXPECT_THROW(judge(scene), std::runtime_error);
 }
 
 TEST(Judge, MarksCountAndFindTheWorst) {
     Scene scene = small_scene(point_light({1, 9, 2}));
     scene.essential = 0;
     ask(scene, {0.5, 0.25, 0.5}, Expected::shadowed);
-    const JudgedScene judged = judge(scene, true);
+    const JudgedScene judged = judge(scene);
     shadows::Visibility visible{std::vector<std::uint32_t>(shadows::kTilePoints / 32, 0xffffffffu)};
     Marks marks = judged.mark(visible);
     EXPECT_EQ(marks.score.false_lit, 1u);

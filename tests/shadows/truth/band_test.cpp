@@ -17,11 +17,6 @@ using shadows::kNoReceiver;
 using shadows::truth::Truth;
 using shadows::truth::Verdict;
 
-Verdict judge(const Truth& truth, const Place& place, glm::vec3 normal = glm::vec3(0)) {
-    shadows::PointArrays points{{place.p.x}, {place.p.y}, {place.p.z}, {place.own}, {normal}};
-    return truth.judge(points, {.threads = 1}).points[0];
-}
-
 /// Offsets disagree => ambiguous, at 1, 4 and 16 epsilon. Counts both to report their ratio.
 struct Tally {
     int points = 0, changing = 0, ambiguous = 0;

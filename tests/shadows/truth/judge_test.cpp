@@ -22,22 +22,6 @@ using shadows::truth::Verdicts;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-shadows::PointArrays to_points(const std::vector<Place>& places, glm::vec3 normal = glm::vec3(0)) {
-    shadows::PointArrays points;
-    for (const Place& place : places) {
-        points.x.push_back(place.p.x);
-        points.y.push_back(place.p.y);
-        points.z.push_back(place.p.z);
-        points.primitive.push_back(place.own);
-        points.normal.push_back(normal);
-    }
-    return points;
-}
-
-Verdict judge(const Truth& truth, const Place& place, glm::vec3 normal = glm::vec3(0)) {
-    return truth.judge(to_points({place}, normal), {.threads = 1}).points[0];
-}
-
 /// Bands on whose limit the distance is not, by what the judge's lower bounds may fall short.
 void expect_band(const Verdict& verdict, Real distance, double epsilon) {
     const int bits[] = {Verdict::kWithin1, Verdict::kWithin4, Verdict::kWithin16};

@@ -36,12 +36,6 @@ int light_side(const Light& light, glm::vec3 a, glm::vec3 b, glm::vec3 c) {
                               : rational_orientation(a, b, c, light.vector);
 }
 
-bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-bool casts(const TriangleMesh& mesh, std::uint32_t t) {
-    return finite(mesh.corner(t, 0)) && finite(mesh.corner(t, 1)) && finite(mesh.corner(t, 2)) &&
-           !mesh.degenerate(t);
-}
-
 Real distance_to_segment(Vector p, Vector a, Vector b) {
     const Vector along = b - a;
     const Real size = glm::dot(along, along);
@@ -64,7 +58,7 @@ int rational_orientation_towards(glm::vec3 a, glm::vec3 b, glm::vec3 direction, 
 
 bool shadowed_by_any(glm::vec3 p, std::uint32_t own, const Light& light, const TriangleMesh& mesh) {
     for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
-        if (t == own || !casts(mesh, t)) continue;
+        if (t == own || mesh.degenerate(t)) continue;
         const glm::vec3 v[3] = {mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
         const int here = rational_orientation(v[0], v[1], v[2], p);
         if (here * light_side(light, v[0], v[1], v[2]) >= 0) continue;
@@ -126,7 +120,7 @@ Real clearance(glm::vec3 p, std::uint32_t own, const Light& light, const Triangl
     std::map<std::pair<Corner, Corner>, int> multiplicity;
     Real result = kInfinity;
     for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
-        if (t == own || !casts(mesh, t)) continue;
+        if (t == own || mesh.degenerate(t)) continue;
         const glm::vec3 v[3] = {mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
         const int side = light_side(light, v[0], v[1], v[2]);
         for (int k = 0; k < 3; ++k) {

@@ -1,9 +1,11 @@
-// Random scenes for the judge's tests: soups, meshes, awkward lights, points near all of it.
+// Random scenes for the judge's tests: soups, meshes, awkward lights, points near all of it; and
+// the judge asked about one point.
 #pragma once
 
+#include <cmath>
 #include <random>
 
-#include "shadows/points.hpp"
+#include "shadows/truth/truth.hpp"
 #include "structures/geometry/light.hpp"
 #include "structures/geometry/triangle_mesh.hpp"
 
@@ -146,6 +148,26 @@ inline Place place_near_shadow(Random& random, const TriangleMesh& mesh, const L
     const float size = glm::length(p) + glm::length(light.vector) + 1;
     const glm::vec3 offset = in_cube(random, 1e-5f * std::pow(2.0f, uniform(random, -2, 5)) * size);
     return {p + (random() % 4 ? offset : glm::vec3(0)), random() % 3 ? shadows::kNoReceiver : t};
+}
+
+/// The places in their order, not padded to tiles as an image is.
+inline shadows::PointArrays to_points(const std::vector<Place>& places,
+                                      glm::vec3 normal = glm::vec3(0)) {
+    shadows::PointArrays points;
+    for (const Place& place : places) {
+        points.x.push_back(place.p.x);
+        points.y.push_back(place.p.y);
+        points.z.push_back(place.p.z);
+        points.primitive.push_back(place.own);
+        points.normal.push_back(normal);
+    }
+    return points;
+}
+
+/// The verdict on one place.
+inline shadows::truth::Verdict judge(const shadows::truth::Truth& truth, const Place& place,
+                                     glm::vec3 normal = glm::vec3(0)) {
+    return truth.judge(to_points({place}, normal), {.threads = 1}).points[0];
 }
 
 }  // namespace tests
