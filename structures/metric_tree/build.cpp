@@ -31,8 +31,11 @@ MetricTreeBuild::~MetricTreeBuild() = default;
 
 std::size_t MetricTreeBuild::required_bytes(std::size_t clusters, std::size_t triangles) const {
     const std::size_t per_cluster = sizeof(Cluster) + sizeof(MetricNode);
+    const std::size_t linker = config_.builder == BuilderKind::insertion
+                                   ? insertion_bytes(*device_, config_)
+                                   : median_bytes(*device_, config_, clusters);
     return clusters * per_cluster + triangles * sizeof(geometry::CornerTriangle) +
-           sizeof(MetricHeader) + linker_bytes(*device_, config_);
+           sizeof(MetricHeader) + linker;
 }
 
 void MetricTreeBuild::prepare(const Clustering& clustering, const geometry::TriangleMesh& mesh) {
@@ -91,7 +94,8 @@ void MetricTreeBuild::restart() {
                         gpu::find_shader(structures_metric_tree_shaders(),
                                          "structures/metric_tree/elements.comp"),
                         variant.constants()),
-            make_linker(*device_, config_, variant));
+            config_.builder == BuilderKind::insertion ? make_insertion(*device_, config_, variant)
+                                                      : make_median(*device_, config_, variant));
     active_ = kernels.get();
     active_->linker->restart(
         {nodes_.address(), header_.address(), cluster_count_, header.frame.delta});

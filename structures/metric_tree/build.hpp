@@ -9,8 +9,10 @@
 // First every cluster becomes a node without subtrees, or a special one, or is left out
 // (elements.comp); then the nodes are linked:
 //   insertion  one by one, by all lanes at once (insertion.comp; Deves et al. 2018, section 5.3)
-//   median     from the top down: pivot, distances, median, three-way partition, children
-//   (median.comp)
+//   median     from the top down: pivot, delta, distances, three-way partition, children
+//              (median.comp); delta is the median distance, after Uhlmann 1991
+//   cost       likewise; delta is what is expected to cost queries least
+// Trees of the latter two are the same whatever the pool does.
 #pragma once
 
 #include <memory>
@@ -23,13 +25,13 @@
 
 namespace structures::metric_tree {
 
-enum class BuilderKind { insertion, median };
+enum class BuilderKind { insertion, median, cost };
 
 struct BuildConfig {
     BuilderKind builder = BuilderKind::insertion;
     bool cull_facing = false;  ///< leave out clusters that face away from the light: exact for
                                ///< closed meshes of one winding only
-    std::uint64_t seed = 1;    ///< order of insertion, or choice of pivots
+    std::uint64_t seed = 1;    ///< order of insertion, or choice of samples
     taskpool::pool::PoolConfig pool;
 };
 
@@ -47,7 +49,7 @@ class MetricTreeBuild final : public taskpool::pool::Job {
     ~MetricTreeBuild() override;
 
     /// Device memory of a build, pool (before any growth) and output: 128 bytes per cluster and 40
-    /// per triangle beside a constant.
+    /// per triangle beside a constant; from the top down, between 8 and 9 more per cluster.
     std::size_t required_bytes(std::size_t clusters, std::size_t triangles) const;
     /// Throws std::invalid_argument for kLinkMask or more clusters.
     void prepare(const Clustering& clustering, const geometry::TriangleMesh& mesh);

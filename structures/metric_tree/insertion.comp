@@ -3,11 +3,13 @@
 //
 // The root task owns the places of a permutation of the clusters. Trees of sorted elements are deep, but
 // a random order finds nothing in the caches; so the order is random in the large and sorted in the
-// small (N. Amenta, S. Choi and G. Rote, "Incremental Constructions con BRIO", 2003). A lane takes an element down from the root: at each node it widens the
-// bounds that speak of the element, takes one of three links, and where there is none, puts its own
-// node there by one compare-and-swap; who loses goes on from the winner. Nothing is locked, and no
-// order matters: nodes' arcs were written by an earlier dispatch, all else are words that change by
-// commuting atomics.
+// small (N. Amenta, S. Choi and G. Rote, "Incremental Constructions con BRIO", 2003).
+//
+// A lane takes an element down from the root: at each node it widens the bounds that speak of the
+// element, takes one of three links, and where there is none, puts its own node there by one
+// compare-and-swap; who loses goes on from the winner. Nothing is locked, and validity depends on no
+// order: nodes' arcs were written by an earlier dispatch, all else are words that change by commuting
+// atomics.
 //
 // A node's delta decides where elements go: near if all of it is within delta of the node's arc, far
 // if nothing is, else overlapping. It halves on every near link, so it belongs to the way to a node
@@ -100,7 +102,7 @@ uint cluster_at(uint place, uint places) {
 }
 
 /// The element of place `place`, at the root. False if it is none.
-bool begin(uint place, uint places, out Insertion insertion) {
+bool begin(uint place, uint places, inout Insertion insertion) {
     const uint id = cluster_at(place, places);
     if (id >= pool.client.cluster_count) return false;
     const MetricNode node = pool.client.nodes.at[id];
@@ -156,28 +158,21 @@ void descend(inout Insertion insertion) {
 void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
     const uint first = chunk * pool.client.chunk_places;
     const uint end = min(first + pool.client.chunk_places, task.places);
-    uint place = first + gl_SubgroupInvocationID;
-    Insertion insertion;
-    bool under_way = false;
     uint turns = 0, inserted = 0, bucketed = 0, depth_max = 0;
-    // A lane that is done with an element takes its next at once.
-    while (under_way || place < end) {
-        ++turns;
-        if (!under_way) {
-            under_way = begin(place, task.places, insertion);
-            place += gl_SubgroupSize;
+    // All lanes take their next together: they are near each other, and go the same ways.
+    for (uint lot = first; lot < end; lot += gl_SubgroupSize) {
+        const uint place = lot + gl_SubgroupInvocationID;
+        Insertion insertion;
+        insertion.depth = 0;
+        if (place < end && begin(place, task.places, insertion)) {
+            while (insertion.link != 0) descend(insertion);
+            ++inserted;
+            if (insertion.depth >= kMaxDepth) ++bucketed;
+            depth_max = max(depth_max, min(insertion.depth + 1, kMaxDepth));
         }
-        if (under_way) {
-            if (insertion.link != 0) descend(insertion);
-            if (insertion.link == 0) {
-                under_way = false;
-                ++inserted;
-                if (insertion.depth >= kMaxDepth) ++bucketed;
-                depth_max = max(depth_max, min(insertion.depth + 1, kMaxDepth));
-            }
-        }
+        turns += 1 + subgroupMax(insertion.depth);
     }
-    pool_spend(subgroupMax(turns));
+    pool_spend(turns);
     pool_progress(end - first);
     inserted = subgroupAdd(inserted);
     bucketed = subgroupAdd(bucketed);
