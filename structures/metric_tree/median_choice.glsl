@@ -97,9 +97,10 @@ void choose(inout Task task) {
     }
     float merit = merit_of(row, samples);
     uint lane = gl_SubgroupInvocationID;  // of equal ones, the lowest
-    [[unroll]] for (uint apart = kLanes / 2; apart > 0; apart /= 2) {
-        const float other = subgroupShuffleXor(merit, apart);
-        const uint from = subgroupShuffleXor(lane, apart);
+    [[unroll]] for (uint k = 0; k < kLaneBits; ++k) {
+        if (1u << k >= kLanes) continue;
+        const float other = subgroupShuffleXor(merit, 1u << k);
+        const uint from = subgroupShuffleXor(lane, 1u << k);
         const bool take = other > merit || (other == merit && from < lane);
         merit = take ? other : merit;
         lane = take ? from : lane;
@@ -119,9 +120,10 @@ void choose(inout Task task) {
     }
     subgroup_sync();
     Choice best = best_delta(0, sampled, gl_SubgroupInvocationID, kLanes);
-    [[unroll]] for (uint apart = kLanes / 2; apart > 0; apart /= 2) {
-        const Choice other = Choice(subgroupShuffleXor(best.cost, apart),
-                                    subgroupShuffleXor(best.delta, apart));
+    [[unroll]] for (uint k = 0; k < kLaneBits; ++k) {
+        if (1u << k >= kLanes) continue;
+        const Choice other = Choice(subgroupShuffleXor(best.cost, 1u << k),
+                                    subgroupShuffleXor(best.delta, 1u << k));
         if (other.cost < best.cost || (other.cost == best.cost && other.delta < best.delta))
             best = other;
     }
