@@ -19,7 +19,7 @@ struct Task {
 };
 struct Client {
     std::uint64_t positions, triangles, order, marks, kept;
-    std::uint32_t seed;
+    std::uint32_t seed, max_triangles;
 };
 
 const gpu::Shader& shader(const char* name) {
@@ -27,14 +27,12 @@ const gpu::Shader& shader(const char* name) {
                             std::string("structures/metric_tree/") + name);
 }
 
-pool::ClientSpec client_spec(const gpu::Device& device, const ClusterConfig& config) {
-    check(config);
+pool::ClientSpec client_spec(const gpu::Device& device) {
     // Loading; five times each mean for each triangle, four times again to move the means, once to
     // gather; and the means' beginnings.
     const std::uint32_t groups = kChunk / device.subgroup_size() + 1;
     return {.task_bytes = sizeof(Task),
             .chunk_iterations = groups * (2 + 5 * (kMeans + 1) + 5 * kMeans) + 1024,
-            .constants = {{16, config.max_triangles}},
             .loops = kLoops};
 }
 
@@ -53,8 +51,10 @@ ClusterBuild::ClusterBuild(gpu::Device& device, const ClusterConfig& config,
       fit_kernel_(device, shader("fit.comp"), {{16, config.capsules}}),
       sort_(device, primitives::RadixSort::Key::u64),
       compact_(device),
-      pool_(device, shader("split.comp"), client_spec(device, config), pool),
-      counts_(device, 2 * sizeof(std::uint32_t), "cluster counts") {}
+      pool_(device, shader("split.comp"), client_spec(device), pool),
+      counts_(device, 2 * sizeof(std::uint32_t), "cluster counts") {
+    check(config);
+}
 
 void ClusterBuild::prepare(const geometry::TriangleMesh& mesh) {
     check(mesh);
@@ -123,7 +123,8 @@ void ClusterBuild::record(gpu::Recorder& recorder) {
             pool_.record(recorder,
                          Client{positions_.address(), triangles_.address(), order_.address(),
                                 marks_.address(), counts_.address(),
-                                static_cast<std::uint32_t>(config_.seed ^ (config_.seed >> 32))});
+                                static_cast<std::uint32_t>(config_.seed ^ (config_.seed >> 32)),
+                                config_.max_triangles});
             break;
         case Stage::list:
             compact_.record(recorder, marks_, {}, firsts_, primitives::Range(counts_).from(4),

@@ -1,4 +1,4 @@
-// Chunks of triangles along the Morton curve to parts of at most kMaxTriangles, by k-means on the
+// Chunks of triangles along the Morton curve to parts of at most max_triangles, by k-means on the
 // task pool: k_means.cpp with the lanes of a subgroup.
 //
 // A task owns a range of the order, of at most kChunk triangles, and reorders it part by part. Full
@@ -7,8 +7,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "taskpool/pool/pool_types.glsl"
-
-layout(constant_id = 16) const uint kMaxTriangles = 16;
 
 const uint kPhaseAll = 0, kPhaseSplit = 1;
 const uint kChunk = 512, kMeans = 8, kCandidates = 8, kRounds = 4;
@@ -26,6 +24,7 @@ struct Client {
     PoolUints marks;  // a word per place in the order, 0 before
     UintArray kept;   // how many triangles the order holds
     uint seed;
+    uint max_triangles;
 };
 #include "taskpool/pool/pool.glsl"
 
@@ -164,7 +163,7 @@ bool move_means(Task task, uint mean_count, uint farthest) {
 
 /// Marks a part of the range that is small enough; keeps another for a task of its own.
 void add_part(inout Task task, uint begin, uint end) {
-    if (end - begin <= kMaxTriangles) {
+    if (end - begin <= pool.client.max_triangles) {
         if (subgroupElect()) pool.client.marks.at[task.first + begin] = end - begin;
         pool_progress(end - begin);
         return;
@@ -201,7 +200,8 @@ void gather_parts(inout Task task, uint mean_count) {
 }
 
 void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
-    const uint mean_count = min(kMeans, (task.count + kMaxTriangles - 1) / kMaxTriangles);
+    const uint most = pool.client.max_triangles;
+    const uint mean_count = min(kMeans, (task.count + most - 1) / most);
     if (mean_count == 1) {
         add_part(task, 0, task.count);
         return;

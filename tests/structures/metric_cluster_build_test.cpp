@@ -42,7 +42,7 @@ class MetricClusterBuild : public tests::GpuTest {
 };
 
 TEST_F(MetricClusterBuild, HoldsAnyNumberOfTriangles) {
-    for (const std::uint32_t most : {1u, 8u, 16u, 22u, 64u}) {
+    for (const std::uint32_t most : {1u, 16u, 64u}) {
         const ClusterConfig config{.max_triangles = most};
         ClusterBuild build(tests::device(), config);
         for (const std::uint32_t count :
@@ -69,13 +69,14 @@ TEST_F(MetricClusterBuild, FillsUpWithDuplicates) {
 
 TEST_F(MetricClusterBuild, HoldsAtAnyScaleAndPlace) {
     const TriangleMesh random = tests::random_triangles(2000, 17);
+    ClusterBuild build(tests::device(), {});
     for (const float scale : {1e-15f, 1e-4f, 1e4f, 1e15f})
         for (const float shift : {0.0f, 100.0f, 1048576.0f}) {
             SCOPED_TRACE(testing::Message() << "scale " << scale << ", moved by " << shift);
             TriangleMesh mesh = random;
             for (glm::vec3& position : mesh.positions)
                 position = (position + glm::vec3(shift, -shift, shift)) * scale;
-            expect_sound(mesh, {});
+            EXPECT_THAT(validate(mesh, run(build, mesh), {}), IsEmpty());
         }
 }
 
@@ -129,16 +130,17 @@ TEST_F(MetricClusterBuild, IsHardlyLooserThanTheHosts) {
     };
     const TriangleMesh meshes[] = {tests::sphere(100, 120, {1, 2, 3}, 2),
                                    tests::random_triangles(20000, 77, 0.01f)};
-    for (const TriangleMesh& mesh : meshes)
-        for (const bool capsules : {false, true}) {
-            const ClusterConfig config{.max_triangles = 16, .capsules = capsules};
-            const Clustering here = cluster(mesh, config), there = expect_sound(mesh, config);
-            const double ratio = looks(there) / looks(here);
-            RecordProperty("area_ratio", std::to_string(ratio));
-            EXPECT_LT(ratio, 1.15);
+    for (const bool capsules : {false, true}) {
+        const ClusterConfig config{.max_triangles = 16, .capsules = capsules};
+        ClusterBuild build(tests::device(), config);
+        for (const TriangleMesh& mesh : meshes) {
+            const Clustering here = cluster(mesh, config), there = run(build, mesh);
+            EXPECT_THAT(validate(mesh, there, config), IsEmpty());
+            EXPECT_LT(looks(there), 1.15 * looks(here));
             EXPECT_LT(static_cast<double>(there.clusters.size()),
                       1.1 * static_cast<double>(here.clusters.size()));
         }
+    }
 }
 
 TEST_F(MetricClusterBuild, RejectsConfigsOutOfRange) {
