@@ -26,6 +26,10 @@ class Method {
 
     /// Takes the scene: uploads, allocates. Not timed. `mesh` must outlive the method's use.
     virtual void prepare(const structures::geometry::TriangleMesh& mesh) = 0;
+    /// Tells which points queries will be about, for methods that leave out what can shadow none of
+    /// them: called before build(), whose time includes what that takes. They must outlive the
+    /// queries.
+    virtual void expect(const Points&) {}
     /// Builds whatever the query walks, for this light. Returns `build_ms` at least.
     virtual structures::Samples build(const structures::geometry::Light& light) = 0;
     /// Answers every point. `visible` gets one bit per point in the order of `points` (bit i % 32

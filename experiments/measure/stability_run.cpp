@@ -190,6 +190,7 @@ class StabilityRun {
         shadows::Visibility visible;
         const Clock::time_point begin = Clock::now();
         player.method->prepare(judged.scene.mesh);
+        player.method->expect(points);
         player.method->build(judged.scene.light);
         const structures::Samples asked = player.method->query(points, visible);
         const std::chrono::duration<double, std::milli> time = Clock::now() - begin;

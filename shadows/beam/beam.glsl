@@ -25,6 +25,7 @@
 vec3 beam_light;  // position, or direction towards a directional light
 
 #include "shadows/beam/points.glsl"
+#include "shadows/beam/edges.glsl"
 #include "shadows/beam/group.glsl"
 #include "shadows/beam/candidate.glsl"
 
@@ -115,7 +116,8 @@ void beam_test_triangles(uint index, bool used) {
     if (subgroupAny(verdict == kCovers)) {
         beam_occluded |= beam_group;
         beam_finished = true;
-        const uint by = subgroupShuffle(index, subgroupBallotFindLSB(subgroupBallot(verdict == kCovers)));
+        const uint by =
+            subgroupShuffle(index, subgroupBallotFindLSB(subgroupBallot(verdict == kCovers)));
         if (!subgroupAny(beam_recent == by)) {
             if (beam_recent_count % kLanes == lane()) beam_recent = by;
             ++beam_recent_count;
@@ -125,16 +127,7 @@ void beam_test_triangles(uint index, bool used) {
     uvec4 candidates = subgroupBallot(verdict == kMeets);
     if (candidates.xy == uvec2(0)) return;
     while (true) {
-        uint from;
-        if (candidates.x != 0) {
-            from = findLSB(candidates.x);
-            candidates.x &= candidates.x - 1u;
-        } else if (kLanes > 32 && candidates.y != 0) {
-            from = 32 + findLSB(candidates.y);
-            candidates.y &= candidates.y - 1u;
-        } else {
-            break;
-        }
+        const uint from = take_lane(candidates);
         ++beam_steps;
         uint hit, doubtful;
         const uint index_from = subgroupShuffle(index, from);
@@ -144,6 +137,7 @@ void beam_test_triangles(uint index, bool used) {
         // The loop of the exact tests counts for all lanes, or not at all.
         if (kLoopsAreCut && subgroupAny(doubtful != 0)) beam_steps += kSlots;
         if (doubtful != 0) test_exactly(index_from, doubtful);
+        if (candidates.xy == uvec2(0)) break;
     }
     beam_live = live_sections(beam_group & ~beam_occluded);
     beam_finished = beam_live == 0;

@@ -5,20 +5,14 @@
 // so that its error against the exact test (occlusion.glsl) is below 1: all four above 1 is a
 // certain hit, one below -1 a certain miss, and what lies between goes to the exact test.
 //
-// Error bounds, with e = 2^-24. The exact test sees corner r (relative to the point) off by at most
-// 9 e |r|: one rounding of the difference, three of the shear and its coefficients, per axis;
-// another 2 e |r| comes from the rounded direction of the segment. Here a corner relative to the
-// origin of the frame is off by 2 e |a|, and u, v by 3 e. With S = |a| + reach >= |r|, every corner
-// is thus off by less than 16 e S as seen from there.
-//   Edge from a to b, n = a x (b - a), as a function of q = (u, v, 1): moving corner a by D changes
-//   n . q = det[a, b, q] by at most |D| |b x q|, so both corners by 16 e (S_a X_b + S_b X_a), X
-//   being the largest |corner x q| over the rectangle, at most the largest at its centre plus the
-//   corner times the half diagonal. Evaluating n and n . q adds 8 e |a| |b - a| |q|. For a
-//   directional light the same holds with X = |corner - q| across and the edge instead of n.
-//   Plane N = (b - a) x (c - a): the exact test's answer is that of exact arithmetic. The computed
-//   N' is off by 5 e |b - a| |c - a|, and N' . d - w with w = N' . a is off by that times |d - a|,
-//   plus 8 e |N'| (|a| + |d|) for the roundings of a, d, w and of the sum.
-// The factors below are twice these, and 1-norms stand for lengths.
+// Error bounds: those of edges are in edges.glsl, whose notation goes on here.
+//   Footprint: corners' own roundings, those of the points' u and v, and a quotient move a corner
+//   by at most 16 e S as seen from a point.
+//   Plane N = (b - a) x (c - a): the computed N' is off by 5 e |b - a| |c - a|, and N' . d - w with
+//   w = N' . a is off by that times |d - a|, plus 13 e |N'| (|a| + |d|) for the roundings of a, of
+//   u, v and k, of w and of the sum. The light's side, N' . (tilt, 1) or w, is off by
+//   13 e |b - a| |c - a| times |(tilt, 1)| or |a|.
+// The factors below are at least twice these.
 #ifndef SHADOWS_BEAM_CANDIDATE_GLSL
 #define SHADOWS_BEAM_CANDIDATE_GLSL
 
@@ -30,68 +24,27 @@ struct Candidate {
 };
 
 const uint kMiss = 0u, kMeets = 1u, kCovers = 2u;
-const float kEdgeError = 2.0 * 16.0 / 16777216.0;
 const float kPlaneError = 2.0 * 16.0 / 16777216.0;
 
 vec3 from_world(vec3 p) { return to_beam((p - beam_origin) * beam_scale); }
 
-// Largest distance across of a corner from the beam's directions; see X above.
-float spread(vec3 r, vec2 centre, vec2 half_size) {
-    if (kDirectional) {
-        const vec2 q = abs(r.xy - beam.tilt * r.z - centre) + half_size;
-        return q.x + q.y;
-    }
-    const vec3 q = vec3(centre, 1);
-    return norm1(cross(r, q)) + norm1(r) * (half_size.x + half_size.y);
-}
-
-// Edge function through r along e, before scaling.
-vec3 edge_function(vec3 r, vec3 e) {
-    if (kDirectional) {
-        const vec2 across = e.xy - beam.tilt * e.z, from = r.xy - beam.tilt * r.z;
-        return vec3(-across.y, across.x, across.y * from.x - across.x * from.y);
-    }
-    return cross(r, e);
-}
-
-float edge_error(float s_a, float x_a, float s_b, float x_b, float length_a, float length_e,
-                 float widest) {
-    return kEdgeError * (s_a * x_b + s_b * x_a +
-                         length_e * (kDirectional ? length_a + widest : length_a * widest));
-}
-
-// Scales `f` by 1 / error; a bound that is 0 or not finite makes every point doubtful.
-float certainty(float error) { return error > 1e-37 && error < 1e37 ? 1.0 / error : 0.0; }
-
-vec2 range_of(vec3 f) {  // over the rectangle
-    const vec2 a = f.xy * beam.lower, b = f.xy * beam.upper;
-    const vec2 least = min(a, b), most = max(a, b);
-    return vec2(least.x + least.y, most.x + most.y) + f.z;
-}
+vec2 range_of(vec3 f) { return range_of(f, beam.lower, beam.upper); }
 
 // Rectangle of u and v that holds every point the triangle may occlude, corners off by the bound
 // above; the whole plane if a corner is not in front of the light.
 void footprint(vec3 a, vec3 b, vec3 c, out vec2 lower, out vec2 upper) {
     const vec3 ra = from_world(a), rb = from_world(b), rc = from_world(c);
     const float slack = kEdgeError * (max(max(norm1(ra), norm1(rb)), norm1(rc)) + beam.reach);
-    vec2 qa, qb, qc, margin;
-    if (kDirectional) {
-        qa = ra.xy - beam.tilt * ra.z;
-        qb = rb.xy - beam.tilt * rb.z;
-        qc = rc.xy - beam.tilt * rc.z;
-        margin = slack * (1.0 + abs(beam.tilt));
-    } else {
-        const float nearest = min(min(ra.z, rb.z), rc.z);
-        if (!(nearest > 2.0 * slack)) {
-            lower = vec2(-kHuge);
-            upper = vec2(kHuge);
-            return;
-        }
-        qa = ra.xy / ra.z;
-        qb = rb.xy / rb.z;
-        qc = rc.xy / rc.z;
-        margin = slack / nearest * 2.0 * (1.0 + max(max(abs(qa), abs(qb)), abs(qc)));
+    const float nearest = min(min(ra.z, rb.z), rc.z);
+    if (!kDirectional && !(nearest > 2.0 * slack)) {
+        lower = vec2(-kHuge);
+        upper = vec2(kHuge);
+        return;
     }
+    const vec2 qa = across(ra, beam.tilt), qb = across(rb, beam.tilt), qc = across(rc, beam.tilt);
+    const vec2 margin =
+        kDirectional ? slack * (1.0 + abs(beam.tilt))
+                     : slack / nearest * 2.0 * (1.0 + max(max(abs(qa), abs(qb)), abs(qc)));
     lower = min(min(qa, qb), qc) - margin;
     upper = max(max(qa, qb), qc) + margin;
 }
@@ -109,10 +62,12 @@ uint classify(vec3 a, vec3 b, vec3 c, uint live, out Candidate candidate) {
     const vec2 widest_slope = max(abs(beam.slope_lower), abs(beam.slope_upper));
     const float slack =
         max(max(sa, sb), sc) * kEdgeError * (1.0 + max(widest_slope.x, widest_slope.y));
-    const vec2 past_lower = max(max(ra.xy - beam.slope_lower * ra.z, rb.xy - beam.slope_lower * rb.z),
-                                rc.xy - beam.slope_lower * rc.z);
-    const vec2 past_upper = min(min(ra.xy - beam.slope_upper * ra.z, rb.xy - beam.slope_upper * rb.z),
-                                rc.xy - beam.slope_upper * rc.z);
+    const vec2 past_lower =
+        max(max(ra.xy - beam.slope_lower * ra.z, rb.xy - beam.slope_lower * rb.z),
+            rc.xy - beam.slope_lower * rc.z);
+    const vec2 past_upper =
+        min(min(ra.xy - beam.slope_upper * ra.z, rb.xy - beam.slope_upper * rb.z),
+            rc.xy - beam.slope_upper * rc.z);
     const vec3 least = min(min(ra, rb), rc), most = max(max(ra, rb), rc);
     if (any(lessThan(past_lower + slack, beam.offset_lower)) ||
         any(greaterThan(past_upper - slack, beam.offset_upper)) ||
@@ -135,16 +90,16 @@ uint classify(vec3 a, vec3 b, vec3 c, uint live, out Candidate candidate) {
         facing_error = kPlaneError * size * (la + beam.reach);
         plane = vec4(normal.xy, -w, normal.z);
     }
-    const vec2 centre = 0.5 * beam.lower + 0.5 * beam.upper;
+    const vec2 tilt = beam.tilt, centre = 0.5 * beam.lower + 0.5 * beam.upper;
     const vec2 half_size = 0.5 * (beam.upper - beam.lower);
     const vec2 outermost = max(abs(beam.lower), abs(beam.upper));
     const float widest = outermost.x + outermost.y + (kDirectional ? 0.0 : 1.0);
-    const float xa = spread(ra, centre, half_size), xb = spread(rb, centre, half_size),
-                xc = spread(rc, centre, half_size);
+    const float xa = spread(ra, tilt, centre, half_size), xb = spread(rb, tilt, centre, half_size),
+                xc = spread(rc, tilt, centre, half_size);
     const float inside = facing < 0 ? -1.0 : 1.0;
-    candidate.edge_ab = edge_function(ra, ab) * inside;
-    candidate.edge_bc = edge_function(rb, bc) * inside;
-    candidate.edge_ca = edge_function(rc, ca) * inside;
+    candidate.edge_ab = edge_function(ra, ab, tilt) * inside;
+    candidate.edge_bc = edge_function(rb, bc, tilt) * inside;
+    candidate.edge_ca = edge_function(rc, ca, tilt) * inside;
     const vec3 error = vec3(edge_error(sa, xa, sb, xb, la, norm1(ab), widest),
                             edge_error(sb, xb, sc, xc, lb, norm1(bc), widest),
                             edge_error(sc, xc, sa, xa, lc, norm1(ca), widest));

@@ -34,7 +34,8 @@ const uint kSectionSlots = kSlots / kSections;
 uint live_sections(uint slots) {
     uint first = 0;
     [[unroll]] for (uint s = 0; s < kSections; ++s) first |= 1u << (s * kSectionSlots);
-    [[unroll]] for (uint i = 1; i < kSectionSlots; i *= 2) slots |= slots >> i;
+    [[unroll]] for (uint k = 0; k < 5; ++k)
+        if (1u << k < kSectionSlots) slots |= slots >> (1u << k);
     return subgroupOr(slots & first);
 }
 vec2 section_lower[kSections], section_upper[kSections];
@@ -66,7 +67,6 @@ vec3 from_beam(vec3 v) {
     return beam.axis == 0 ? v.zxy : beam.axis == 1 ? v.yzx : v;
 }
 
-const float kHuge = 3.0e38;
 // Points whose distance to the light is below this are left to the per-point walk: 1 / z overflows.
 const float kTinyDistance = 1e-30;
 // An axis is good for all points of a group if none is further off it than this factor.
@@ -215,8 +215,9 @@ uint take_group(uint todo, vec3 towards_light) {
         beam.key = vec2(box_lower.z, box_upper.z);
         beam.box_lower = vec3(beam.lower, box_lower.z);
         beam.box_upper = vec3(beam.upper, box_upper.z);
-        beam.hull_lower = vec3(mix(vec2(-kHuge), box_lower.xy, greaterThanEqual(beam.tilt, vec2(0))),
-                               box_lower.z);
+        beam.hull_lower =
+            vec3(mix(vec2(-kHuge), box_lower.xy, greaterThanEqual(beam.tilt, vec2(0))),
+                 box_lower.z);
         beam.hull_upper =
             vec3(mix(vec2(kHuge), box_upper.xy, lessThanEqual(beam.tilt, vec2(0))), kHuge);
         beam.slope_lower = beam.slope_upper = beam.tilt;

@@ -1,5 +1,5 @@
-// The points of a tile and its bits, and reductions over a subgroup: part of beam.glsl, and of every
-// kernel that works on tiles.
+// The points of a tile and its bits, and reductions over a subgroup: part of beam.glsl, and of
+// every kernel that works on tiles.
 // A lane holds kSlots points; bit k of a mask stands for its slot k. Arrays are only indexed by
 // unrolled loops, so that they stay in registers.
 #ifndef SHADOWS_BEAM_POINTS_GLSL
@@ -20,11 +20,37 @@ uint tile_point(uint tile, uint k) {
 }
 bool has_bit(uint bits, uint k) { return (bits >> k & 1u) != 0; }
 
+// Takes the lowest lane out of a vote that is not empty.
+uint take_lane(inout uvec4 votes) {
+    if (kLanes <= 32 || votes.x != 0) {
+        const uint lane = findLSB(votes.x);
+        votes.x &= votes.x - 1u;
+        return lane;
+    }
+    const uint lane = findLSB(votes.y);
+    votes.y &= votes.y - 1u;
+    return 32u + lane;
+}
+
+// Loops over hops of 1, 2, 4 ... run over the logarithm: Mesa before 23 unrolls no loop whose variable is
+// multiplied or divided, and nobody would count its iterations.
+
 // Reductions by exchange are cheaper than the driver's own on narrow subgroups.
 float reduce_min(float value) {
     if (kLanes > 16) return subgroupMin(value);
-    [[unroll]] for (uint step = 1; step < 16; step *= 2) {
-        if (step < kLanes) value = min(value, subgroupShuffleXor(value, step));
+    [[unroll]] for (uint k = 0; k < 4; ++k) {
+        if (1u << k < kLanes) value = min(value, subgroupShuffleXor(value, 1u << k));
+    }
+    return value;
+}
+// Sum of the values of this lane and of those below; by exchange as well.
+uint sum_to_here(uint value) {
+    [[unroll]] for (uint k = 0; k < 7; ++k) {
+        const uint apart = 1u << k;
+        if (apart < kLanes) {
+            const uint other = subgroupShuffle(value, lane() - apart);
+            value += lane() < apart ? 0 : other;
+        }
     }
     return value;
 }

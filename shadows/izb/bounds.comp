@@ -8,7 +8,7 @@ void main() {
     const IzbFrame frame = push.frame.at;
     vec2 lower[kFaces], upper[kFaces];
     float reach[kFaces];
-    uint points[kFaces];
+    uint points[kFaces], unplaced = 0;
     [[unroll]] for (uint f = 0; f < kFaces; ++f) {
         lower[f] = vec2(kHuge);
         upper[f] = vec2(-kHuge);
@@ -20,6 +20,7 @@ void main() {
         const Projected q =
             project(position_of(point), frame.origin, frame.scale, frame.tilt, frame.face);
         const bool asked = primitive_of(point) != kNoPrimitive;
+        unplaced += asked && q.face == kNowhere ? 1 : 0;
         [[unroll]] for (uint f = 0; f < kFaces; ++f) {
             const bool here = asked && q.face == f;
             const vec2 uv = vec2(q.u, q.v);
@@ -29,18 +30,20 @@ void main() {
             points[f] += here ? 1 : 0;
         }
     }
-    Extents extents = Extents(packUint2x32(push.job.zw));
+    ExtentsRef extents = ExtentsRef(packUint2x32(push.job.zw));
+    unplaced = subgroupAdd(unplaced);
+    if (unplaced > 0 && lane() == 0) atomicAdd(extents.at.unplaced, unplaced);
     [[unroll]] for (uint f = 0; f < kFaces; ++f) {
         const vec2 least = reduce_min(lower[f]), most = reduce_max(upper[f]);
         const float farthest = reduce_max(reach[f]);
         const uint count = subgroupAdd(points[f]);
         if (count > 0 && lane() == 0) {
-            atomicMax(extents.at[f].not_lower_u, ~ordered(least.x));
-            atomicMax(extents.at[f].not_lower_v, ~ordered(least.y));
-            atomicMax(extents.at[f].upper_u, ordered(most.x));
-            atomicMax(extents.at[f].upper_v, ordered(most.y));
-            atomicMax(extents.at[f].reach, ordered(farthest));
-            atomicAdd(extents.at[f].points, count);
+            atomicMax(extents.at.faces[f].not_lower_u, ~ordered(least.x));
+            atomicMax(extents.at.faces[f].not_lower_v, ~ordered(least.y));
+            atomicMax(extents.at.faces[f].upper_u, ordered(most.x));
+            atomicMax(extents.at.faces[f].upper_v, ordered(most.y));
+            atomicMax(extents.at.faces[f].reach, ordered(farthest));
+            atomicAdd(extents.at.faces[f].points, count);
         }
     }
 }

@@ -42,8 +42,8 @@ uint farthest_of(Cells cells, uint face) {
 // Where `count` entries go. A list that has overflowed is not counted further, lest the count
 // wraps.
 uint reserve(uint count) {
-    const uint listed = push.status.at.entry_count;
-    return listed > push.job.z ? listed : atomicAdd(push.status.at.entry_count, count);
+    const uint listed = push.status.at.counts[kEntries];
+    return listed > push.job.z ? listed : atomicAdd(push.status.at.counts[kEntries], count);
 }
 
 void main() {
@@ -52,8 +52,8 @@ void main() {
     const float scale = push.frame.at.scale;
     const vec2 tilt = push.frame.at.tilt;
     const bool used = index < push.job.y;
-    Triangle triangle;
-    if (used) triangle = push.triangles.at[index];
+    CornerTriangle triangle;
+    if (used) triangle = corner_triangle(push.triangles, index);
     for (uint face = 0; face < kFaces; ++face) {
         if (push.frame.at.faces[face].points == 0) continue;
         bool keep = used;
@@ -90,7 +90,7 @@ void main() {
         uint base = 0;
         if (lane() == 0) base = reserve(total);
         base = subgroupBroadcastFirst(base) + before;
-        const uint caster = index | face << 29;
+        const uint caster = index | face << kFaceShift;
         for (uint i = 0; i < count; ++i) {
             if (base + i >= push.job.z) break;
             uvec2 first = cells.first, last = cells.last;

@@ -4,16 +4,14 @@
 #include <bit>
 #include <cmath>
 
+#include "taskpool/primitives/ordered.hpp"
+
 namespace shadows::izb {
 namespace {
 
 using structures::geometry::Aabb;
 using structures::geometry::Light;
-
-/// Inverse of ordered() in frame.glsl.
-float from_ordered(std::uint32_t word) {
-    return std::bit_cast<float>(word ^ (word & 0x80000000u ? 0x80000000u : 0xffffffffu));
-}
+using taskpool::primitives::from_ordered;
 
 /// The power of two that takes `size` to between 1 and 2, or next to that where it has none.
 float scale_for(float size) {
@@ -56,7 +54,6 @@ void place_cells(IzbFace& face, std::uint32_t resolution) {
     const glm::uvec2 logs = log_cells(face, extent, resolution);
     face.log_width = logs.x;
     face.log_height = logs.y;
-    face.level_count = std::max(logs.x, logs.y) + 1;
     for (int i = 0; i < 2; ++i) {
         const double cells = double(1u << logs[i]);
         face.cell[i] = float(extent[i] / cells);
@@ -87,27 +84,35 @@ IzbFrame make_frame(const Aabb& bounds, const Light& light) {
     return frame;
 }
 
-Grid make_grid(const IzbFrame& frame, const Extents& extents, std::uint32_t resolution) {
+std::uint32_t level_count(const IzbFace& face) {
+    return face.points == 0 ? 0 : std::max(face.log_width, face.log_height) + 1;
+}
+
+std::uint32_t level_nodes(const IzbFace& face, std::uint32_t level) {
+    return 1u << (std::max(face.log_width, level) - level + std::max(face.log_height, level) -
+                  level);
+}
+
+Grid make_grid(const IzbFrame& frame, const IzbExtents& extents, std::uint32_t resolution) {
     Grid grid{frame};
     for (std::uint32_t f = 0; f < kFaces; ++f) {
         IzbFace& face = grid.frame.faces[f];
         face = {};
-        face.points = extents[f].points;
+        const IzbExtent& extent = extents.faces[f];
+        face.points = extent.points;
         if (face.points == 0) continue;
-        face.lower = {from_ordered(~extents[f].not_lower_u), from_ordered(~extents[f].not_lower_v)};
-        face.upper = {from_ordered(extents[f].upper_u), from_ordered(extents[f].upper_v)};
-        face.reach = from_ordered(extents[f].reach);
+        face.lower = {from_ordered(~extent.not_lower_u), from_ordered(~extent.not_lower_v)};
+        face.upper = {from_ordered(extent.upper_u), from_ordered(extent.upper_v)};
+        face.reach = from_ordered(extent.reach);
         place_cells(face, resolution);
-        grid.level_count = std::max(grid.level_count, face.level_count);
-        face.level_first[0] = grid.frame.cell_count;
-        grid.frame.cell_count += 1u << (face.log_width + face.log_height);
+        face.level_first[0] = grid.cell_count;
+        grid.cell_count += level_nodes(face, 0);
     }
-    grid.node_count = grid.frame.cell_count;
+    grid.node_count = grid.cell_count;
     for (IzbFace& face : grid.frame.faces)
-        for (std::uint32_t level = 1; level < face.level_count; ++level) {
+        for (std::uint32_t level = 1; level < level_count(face); ++level) {
             face.level_first[level] = grid.node_count;
-            grid.node_count += 1u << (std::max(face.log_width, level) - level +
-                                      std::max(face.log_height, level) - level);
+            grid.node_count += level_nodes(face, level);
         }
     return grid;
 }

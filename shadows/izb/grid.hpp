@@ -5,7 +5,6 @@
 //     Grid grid = make_grid(frame, extents, resolution);       // the faces
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "shadows/izb/izb_shared.h"
@@ -13,8 +12,6 @@
 #include "structures/geometry/light.hpp"
 
 namespace shadows::izb {
-
-using Extents = std::array<IzbExtent, kFaces>;
 
 /// Cells along a face's longer side at most.
 inline constexpr std::uint32_t kMaxResolution = 1u << (kLevels - 1);
@@ -25,13 +22,18 @@ IzbFrame make_frame(const structures::geometry::Aabb& bounds,
 
 struct Grid {
     IzbFrame frame;
-    std::uint32_t node_count = 0;   ///< of all faces' pyramids, cells included
-    std::uint32_t level_count = 0;  ///< of the highest pyramid
+    std::uint32_t cell_count = 0;  ///< of all faces
+    std::uint32_t node_count = 0;  ///< of all faces' pyramids, cells included
 };
+
+/// Levels of a face's pyramid, cells included: 0 if it has no points.
+std::uint32_t level_count(const IzbFace& face);
+/// Nodes of one of these levels.
+std::uint32_t level_nodes(const IzbFace& face, std::uint32_t level);
 
 /// Cells for the faces that have points: `resolution`, rounded up to a power of two, along the
 /// longer side, or as many as give a cell kPointsPerCell points on average if it is 0.
-Grid make_grid(const IzbFrame& frame, const Extents& extents, std::uint32_t resolution);
+Grid make_grid(const IzbFrame& frame, const IzbExtents& extents, std::uint32_t resolution);
 inline constexpr double kPointsPerCell = 8;
 
 }  // namespace shadows::izb

@@ -32,29 +32,40 @@ struct IzbFace {
     uint points;
     uint log_width;
     uint log_height;
-    uint level_count;
-    uint level_first[12];  // first node of each level; those of level 0 are the cells
+    uint level_first[kLevels];  // first node of each level; those of level 0 are the cells
 };
 
 // The frame of a query; see frame.glsl.
 struct IzbFrame {
     vec3 origin;
     float scale;
-    vec2 tilt;        // directional light: t.x / t.z and t.y / t.z, t towards the light
-    uint face;        // directional light: the only face
-    uint cell_count;  // of all faces
-    IzbFace faces[6];
+    vec2 tilt;  // directional light: t.x / t.z and t.y / t.z, t towards the light
+    uint face;  // directional light: the only face
+    IzbFace faces[kFaces];
 };
 
-// Extent of the points of one face, floats as ordered words (see ordered() in frame.glsl), of which
+// Extent of the points of one face, floats as ordered words (ordered.glsl), of which
 // the lower ones are stored complemented: all grow from 0.
 struct IzbExtent {
     uint not_lower_u, not_lower_v, upper_u, upper_v, reach, points;
 };
 
+struct IzbExtents {
+    IzbExtent faces[kFaces];
+    uint unplaced;  // points of no face, as their place overflows: they get no answer
+};
+
+// A point in its cell: u, v, k (see frame.glsl), and its primitive, or kNoPrimitive once it is known
+// to be shadowed.
+struct IzbPoint {
+    float u, v, k;
+    uint primitive;
+};
+
+GROVE_CONSTANT uint kFaceShift = 29u, kCasterMask = (1u << kFaceShift) - 1u;
 // A triangle and cells that may hold points it occludes.
 struct IzbEntry {
-    uint caster;  // triangle | face << 29
+    uint caster;  // triangle | face << kFaceShift
     uint lower;   // first cell: x | y << 16
     uint upper;   // last cell
     float reach;  // largest 1-norm of the cells' points
@@ -67,23 +78,27 @@ struct IzbRange {
     uint end;
 };
 
+// The lists of a pass: entries, ranges, and pairs of an entry and a point for occludes_exactly().
+GROVE_CONSTANT uint kLists = 3u, kEntries = 0u, kRanges = 1u, kUnsurePairs = 2u;
+
 struct IzbStatus {
-    uint entry_count;  // more than the capacity: some did not fit, and the pass must be repeated
-    uint range_count;  // likewise
+    uint counts[kLists];  // more than the capacity: some did not fit, repeat the pass
     uint next_entry;
     uint next_range;
     // With statistics, as 64-bit counts, low word first: points against the functions of a
     // triangle, and of these, points left to the exact test.
     uvec2 tests;
     uvec2 exact_tests;
+    uvec3 groups[kLists];  // arguments of the dispatch over each list
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(IzbFace) == 108);
-static_assert(sizeof(IzbFrame) == 32 + 6 * sizeof(IzbFace));
-static_assert(sizeof(IzbExtent) == 24);
+static_assert(sizeof(IzbFace) == 104);
+static_assert(sizeof(IzbFrame) == 28 + kFaces * sizeof(IzbFace));
+static_assert(sizeof(IzbExtents) == kFaces * 24 + 4);
+static_assert(sizeof(IzbPoint) == 16);
 static_assert(sizeof(IzbEntry) == 16 && sizeof(IzbRange) == 12);
-static_assert(sizeof(IzbStatus) == 32 && offsetof(IzbStatus, tests) == 16);
+static_assert(sizeof(IzbStatus) == 72 && offsetof(IzbStatus, groups) == 36);
 }  // namespace shadows::izb
 #endif
 #undef GROVE_CONSTANT

@@ -49,7 +49,7 @@ Samples IzbMethod::query(const Points& points, Visibility& visible) {
     const QueryResult result = query_.run(points, visible);
     Samples samples{{"query_ms", result.milliseconds, "ms"},
                     {"memory_bytes", double(query_.memory_bytes()), "bytes"},
-                    {"incomplete", 0},
+                    {"incomplete", double(result.incomplete)},
                     {"cells", double(result.cells)},
                     {"entries", double(result.entries)},
                     {"ranges", double(result.ranges)},
@@ -58,6 +58,7 @@ Samples IzbMethod::query(const Points& points, Visibility& visible) {
         const double count = std::max(points.valid_count(), 1u);
         samples.push_back({"tested_triangles_mean", double(result.tests) / count});
         samples.push_back({"exact_tests_mean", double(result.exact_tests) / count});
+        samples.push_back({"exact_decisions", double(result.unsure)});
     }
     return samples;
 }

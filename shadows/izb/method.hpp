@@ -13,7 +13,8 @@ class IzbMethod final : public Method {
     void prepare(const structures::geometry::TriangleMesh& mesh) override;
     /// Only takes the light: the grid depends on the points, and is part of the query.
     structures::Samples build(const structures::geometry::Light& light) override;
-    /// query_ms, memory_bytes, cells, and counts of the work.
+    /// query_ms (on the host's clock: QueryResult), memory_bytes, incomplete, cells, and counts of
+    /// the work.
     structures::Samples query(const Points& points, Visibility& visible) override;
     bool claims_exact() const override { return true; }
 

@@ -13,7 +13,7 @@ void main() {
         uint place = kNoCell;
         if (cell != kNoCell) {
             place = push.cells.at[cell] + push.places.at[point];
-            push.binned.at[place] = BinnedPoint(q.u, q.v, q.k, primitive_of(point));
+            push.binned.at[place] = IzbPoint(q.u, q.v, q.k, primitive_of(point));
             push.order.at[place] = point;
         }
         push.places.at[point] = place;

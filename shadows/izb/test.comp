@@ -1,6 +1,6 @@
-// Tests the entries' triangles against the points of their cells; job.x entries. Cells with many
-// points, and those for which this invocation has no loop iterations left, become ranges, of which
-// the list has room for job.z.
+// Tests the entries' triangles against the points of their cells. Cells with many points, and those
+// for which this invocation has no loop iterations left, become ranges, of which the list has room
+// for job.y.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shadows/izb/test.glsl"
@@ -10,12 +10,12 @@ void leave_to_ranges(uint begin, uint end) {
     uint base = 0;
     if (lane() == 0) {
         // A list that has overflowed is not counted further, lest the count wraps.
-        base = push.status.at.range_count;
-        if (base <= push.job.z) base = atomicAdd(push.status.at.range_count, count);
+        base = push.status.at.counts[kRanges];
+        if (base <= push.job.y) base = atomicAdd(push.status.at.counts[kRanges], count);
     }
     base = subgroupBroadcastFirst(base);
     for (uint i = lane(); i < count; i += gl_SubgroupSize) {
-        if (base + i >= push.job.z) break;
+        if (base + i >= push.job.y) break;
         const uint first = begin + i * kRangePoints;
         push.ranges.at[base + i] = IzbRange(entry_index, first, min(first + kRangePoints, end));
     }
@@ -47,8 +47,7 @@ void visit_cells(IzbFace face, uvec2 first, uvec2 last) {
         uint begin = 0, end = 0;
         if (i < count) {
             const uint key = push.farthest.at[cell];
-            const vec2 lower = face.lower + vec2(at) * face.cell;
-            const Rectangle r = Rectangle(lower - face.pad, lower + face.cell + face.pad);
+            const Rectangle r = cells_rectangle(face.lower, face.cell, face.pad, at, at);
             visit = key != kNobody && may_occlude(entry_caster, r, from_ordered(key));
             if (visit) {
                 begin = push.cells.at[cell];
@@ -83,8 +82,7 @@ void visit_entry() {
         if (mine < end) {
             const uint key = push.farthest.at[face.level_first[kTileLog] +
                                               ((entry_first.y >> kTileLog) << log_row) + mine];
-            const Rectangle r = Rectangle(face.lower + vec2(first) * face.cell - face.pad,
-                                          face.lower + vec2(last + 1u) * face.cell + face.pad);
+            const Rectangle r = cells_rectangle(face.lower, face.cell, face.pad, first, last);
             visit = key != kNobody && may_occlude(entry_caster, r, from_ordered(key));
         }
         uvec4 votes = subgroupBallot(visit);
@@ -103,13 +101,15 @@ void main() {
     const vec2 tilt = push.frame.at.tilt;
     batches_left = kBatchLimit;
     test_count = exact_count = 0;
+    const uint count = push.status.at.counts[kEntries];
     for (uint taken = 0; taken < kChunksPerGroup; ++taken) {
         uint first = 0;
-        if (lane() == 0) first = atomicAdd(push.status.at.next_entry, gl_SubgroupSize);
+        if (lane() == 0) first = atomicAdd(push.status.at.next_entry, kChunkEntries);
         first = subgroupBroadcastFirst(first);
-        if (first >= push.job.x) break;
+        if (first >= count) break;
         const uint index = first + lane();
-        const Held held = hold(index, index < push.job.x, origin, scale, tilt);
+        const bool used = lane() < kChunkEntries && index < count;
+        const Held held = hold(index, used, origin, scale, tilt);
         uvec4 votes = subgroupBallot(held.used);
         while (true) {
             turn_to(held, take_lane(votes));

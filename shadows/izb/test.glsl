@@ -1,5 +1,6 @@
 // Testing the points of cells against a triangle: what the kernels over entries and over ranges of
-// points share. A lane holds an entry; the subgroup turns to them one after the other.
+// points share. A lane holds an entry; the subgroup turns to them one after the other. What double
+// precision cannot tell goes to a list with room for job.x pairs.
 #ifndef SHADOWS_IZB_TEST_GLSL
 #define SHADOWS_IZB_TEST_GLSL
 #include "shadows/izb/caster.glsl"
@@ -10,14 +11,14 @@ struct Held {
     uint index;
     uint face;
     uvec2 first, last;
-    Triangle triangle;
+    CornerTriangle triangle;
     Caster caster;
 };
 
 // The entry at hand, the same in all lanes.
 uint entry_index, entry_face;
 uvec2 entry_first, entry_last;
-Triangle entry_triangle;
+CornerTriangle entry_triangle;
 Caster entry_caster;
 
 uint batches_left;  // of points that this invocation may still test
@@ -30,10 +31,10 @@ Held hold(uint index, bool used, vec3 origin, float scale, vec2 tilt) {
     held.face = 0;
     if (used) {
         const IzbEntry entry = push.entries.at[index];
-        held.face = entry.caster >> 29;
+        held.face = entry.caster >> kFaceShift;
         held.first = uvec2(entry.lower & 0xffffu, entry.lower >> 16);
         held.last = uvec2(entry.upper & 0xffffu, entry.upper >> 16);
-        held.triangle = push.triangles.at[entry.caster & 0x1fffffffu];
+        held.triangle = corner_triangle(push.triangles, entry.caster & kCasterMask);
         held.caster = make_caster(corners_of(held.triangle, origin, scale, held.face), tilt,
                                   cells_rectangle(held.face, held.first, held.last), entry.reach);
     }
@@ -52,13 +53,14 @@ void turn_to(Held held, uint from) {
     entry_caster = broadcast(held.caster, from);
 }
 
-bool exactly_occluded(uint place) {
-    const vec3 p = position_of(push.order.at[place]);
-    if (kDirectional)
-        return occludes(directional_segment(p, push.light), entry_triangle.a, entry_triangle.b,
-                        entry_triangle.c);
-    return occludes(point_segment(p, push.light), entry_triangle.a, entry_triangle.b,
-                    entry_triangle.c);
+// Leaves a point to unsure.comp, against the entry at hand. A list that has overflowed is not
+// counted further, lest the count wraps.
+void leave_unsure(uint place) {
+    uint index = push.status.at.counts[kUnsurePairs];
+    if (index <= push.job.x) index = atomicAdd(push.status.at.counts[kUnsurePairs], 1u);
+    if (index >= push.job.x) return;
+    push.keys.at[2 * index] = entry_index;
+    push.keys.at[2 * index + 1] = place;
 }
 
 // Tests the points at places [begin, end), which is not empty. Returns the smallest k of those that
@@ -70,7 +72,7 @@ float test_points(uint begin, uint end) {
     while (true) {
         const uint place = first + lane();
         uint verdict = kMiss;
-        BinnedPoint p = BinnedPoint(0, 0, kHuge, kNoPrimitive);
+        IzbPoint p = IzbPoint(0, 0, kHuge, kNoPrimitive);
         if (place < end) p = push.binned.at[place];
         const bool alive = p.primitive != kNoPrimitive;
         if (alive && p.primitive != entry_triangle.primitive)
@@ -79,7 +81,12 @@ float test_points(uint begin, uint end) {
             test_count += alive ? 1 : 0;
             exact_count += verdict == kDoubt ? 1 : 0;
         }
-        if (verdict == kDoubt) verdict = exactly_occluded(place) ? kHit : kMiss;
+        if (verdict == kDoubt) {
+            const int answer = occludes_quickly(segment_of(place), entry_triangle.a,
+                                                entry_triangle.b, entry_triangle.c);
+            if (answer == kUnsure) leave_unsure(place);
+            verdict = answer == 1 ? kHit : kMiss;
+        }
         if (verdict == kHit) push.binned.at[place].primitive = kNoPrimitive;
         if (alive && verdict != kHit) farthest = min(farthest, p.k);
         first += gl_SubgroupSize;
@@ -97,18 +104,6 @@ void add_statistics() {
         if (atomicAdd(push.status.at.exact_tests.x, exact) > ~exact)
             atomicAdd(push.status.at.exact_tests.y, 1u);
     }
-}
-
-// Takes the lowest lane out of a vote that is not empty.
-uint take_lane(inout uvec4 votes) {
-    if (votes.x != 0) {
-        const uint lane = findLSB(votes.x);
-        votes.x &= votes.x - 1u;
-        return lane;
-    }
-    const uint lane = findLSB(votes.y);
-    votes.y &= votes.y - 1u;
-    return 32u + lane;
 }
 
 #endif

@@ -85,22 +85,18 @@ bool beam_meets_cluster(Cluster cluster) {
 
 /// Tests `count` triangles from `first` on of each lane, packed into full batches.
 void test_triangles_of_lanes(uint first, uint count) {
-    uint before = 0;  // sum of the counts of lower lanes
-    uint sum = count;
-    [[unroll]] for (uint apart = 1; apart < kLanes; apart *= 2) {
-        const uint other = subgroupShuffle(sum, lane() - apart);
-        sum += lane() < apart ? 0 : other;
-    }
-    before = sum - count;
-    const uint total = subgroupShuffle(sum, kLanes - 1);
+    const uint to_here = sum_to_here(count), before = to_here - count;
+    const uint total = subgroupShuffle(to_here, kLanes - 1);
     if (total == 0 || !beam_take_triangles(total)) return;
     uint done = 0;
     while (true) {
         // The last lane whose triangles begin at or before this one.
         const uint mine = done + lane();
         uint from = 0;
-        [[unroll]] for (uint apart = kLanes / 2; apart > 0; apart /= 2)
-            if (subgroupShuffle(before, from + apart) <= mine) from += apart;
+        [[unroll]] for (uint k = 0; k < 7; ++k) {
+            const uint apart = kLanes / 2 >> k;
+            if (apart > 0 && subgroupShuffle(before, from + apart) <= mine) from += apart;
+        }
         const uint index = subgroupShuffle(first, from) + mine - subgroupShuffle(before, from);
         beam_test_triangles(mine < total ? index : 0, mine < total);
         done += kLanes;

@@ -30,6 +30,7 @@ std::span<const Parameter> parameters() {
             {"statistics", false, "count nodes and triangles per point (slower)"},
             {"stack", std::int64_t{kStack}, "stack entries of a beam or packet", {}, 2, kStack},
             {"density", std::int64_t{64}, "triangles per point a beam may meet", {}, 0, 1e6},
+            {"cull_receivers", false, "leave out clusters that can shadow no point asked about"},
             {"depth_test", true, "leave out subtrees behind the point"},
             {"interval_test", true, "leave out overlapping subtrees out of reach"},
             {"slab_test", true, "leave out clusters whose slab is missed"},
@@ -84,7 +85,13 @@ MetricTreeMethod::MetricTreeMethod(taskpool::gpu::Device& device, const Settings
       build_(device, build_config(settings)),
       limits_(limits(settings)),
       shaders_(shaders(settings)),
-      times_(device, 2) {}
+      times_(device, 2) {
+    if (!settings.boolean("cull_receivers")) return;
+    if (reference_)
+        throw structures::SettingError("cull_receivers",
+                                       "'cull_receivers' needs a tree built on the GPU");
+    receivers_.emplace(device);
+}
 
 void MetricTreeMethod::prepare(const TriangleMesh& mesh) {
     const auto begin = std::chrono::steady_clock::now();
@@ -103,6 +110,23 @@ void MetricTreeMethod::prepare(const TriangleMesh& mesh) {
     query_ = &*query;
 }
 
+double MetricTreeMethod::choose_casters() {
+    if (!points_)
+        throw std::logic_error("metric_tree: cull_receivers needs expect() before build()");
+    times_.clear();
+    Recorder recorder(device_);
+    recorder.timestamp(times_, "begin");
+    receivers_->record(
+        recorder,
+        {build_.frame(), build_.view().clusters,
+         static_cast<std::uint32_t>(clustering_.clusters.size()), build_.has_capsules()},
+        *points_);
+    recorder.timestamp(times_, "end");
+    device_.run(recorder);
+    build_.set_mask(receivers_->mask());
+    return times_.milliseconds("begin", "end");
+}
+
 double MetricTreeMethod::build_on_host(const Light& light) {
     const auto begin = std::chrono::steady_clock::now();
     const Tree tree = build_reference(clustering_, bounds_, light, *reference_);
@@ -114,14 +138,16 @@ double MetricTreeMethod::build_on_host(const Light& light) {
 Samples MetricTreeMethod::build(const Light& light) {
     light_ = light;
     build_.set_light(light);
-    const double milliseconds =
-        reference_ ? build_on_host(light) : taskpool::pool::run(device_, build_).gpu_ms;
+    double milliseconds = receivers_ ? choose_casters() : 0;
+    milliseconds += reference_ ? build_on_host(light) : taskpool::pool::run(device_, build_).gpu_ms;
     const MetricHeader header = build_.header();
     Samples samples{
         {"build_ms", milliseconds, "ms"},
         {"cluster_ms", cluster_ms_, "ms"},
         {"casters_total", double(header.cluster_count)},
         {"casters_inserted", double(header.inserted)},
+        {"culled_facing", double(header.culled_facing)},
+        {"culled_unseen", double(header.culled_unseen)},
         {"special_clusters", double(header.special_count)},
         {"bucketed_clusters", double(header.bucketed)},
         {"depth_max", double(header.depth_max)},
@@ -137,6 +163,8 @@ Samples MetricTreeMethod::build(const Light& light) {
 }
 
 Samples MetricTreeMethod::query(const Points& points, Visibility& visible) {
+    if (receivers_ && &points != points_)
+        throw std::logic_error("metric_tree: cull_receivers, but other points than expected");
     query_->prepare(points.count());
     times_.clear();
     Recorder recorder(device_);

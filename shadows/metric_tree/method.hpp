@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "shadows/method.hpp"
+#include "shadows/metric_tree/receivers.hpp"
 #include "shadows/tiles/tile_query.hpp"
 #include "structures/metric_tree/settings.hpp"
 
@@ -16,6 +17,7 @@ class MetricTreeMethod final : public Method {
     MetricTreeMethod(taskpool::gpu::Device& device, const structures::Settings& settings);
 
     void prepare(const structures::geometry::TriangleMesh& mesh) override;
+    void expect(const Points& points) override { points_ = &points; }
     /// build_ms (the tree for this light), cluster_ms (once, by prepare), memory_bytes, what became
     /// of the clusters, and counters of the pool.
     structures::Samples build(const structures::geometry::Light& light) override;
@@ -25,6 +27,8 @@ class MetricTreeMethod final : public Method {
     bool claims_exact() const override { return !build_.config().cull_facing; }
 
   private:
+    /// Records and runs the choice of clusters that may shadow a point; milliseconds.
+    double choose_casters();
     double build_on_host(const structures::geometry::Light& light);
 
     taskpool::gpu::Device& device_;
@@ -37,6 +41,8 @@ class MetricTreeMethod final : public Method {
     std::array<std::optional<tiles::TileQuery>, 2> queries_;  ///< without and with capsules; kept,
                                                               ///< as kernels take long to compile
     tiles::TileQuery* query_ = nullptr;                       ///< the one for the clusters prepared
+    std::optional<Receivers> receivers_;  ///< if clusters that shadow no point are left out
+    const Points* points_ = nullptr;      ///< expected
     taskpool::gpu::Timestamps times_;
     structures::metric_tree::Clustering clustering_;
     structures::geometry::Aabb bounds_;

@@ -12,6 +12,7 @@ struct Structure {
     CornerTriangles triangles;
 };
 #include "shadows/tiles/tiles.glsl"
+#include "shadows/metric_tree/question.glsl"
 
 // Each can be turned off, to measure what it saves.
 layout(constant_id = 20) const bool kUseDepth = true;     // subtrees behind the point
@@ -19,23 +20,6 @@ layout(constant_id = 21) const bool kUseInterval = true;  // overlapping subtree
 layout(constant_id = 22) const bool kUseSlabs = true;     // clusters whose slab the segment misses
 
 vec3 asked_from(vec3 p) { return p; }
-
-const float kRound = 9.5367431640625e-7;  // 2^-20: 16 roundings
-
-/// Where the light sees the point, and how deep. A point within a rounding of the light asks for
-/// nothing: its segment is empty, or too short to meet what is not there as well.
-Question question_of(LightFrame frame, vec3 point) {
-    const vec3 p = (point - frame.origin) * frame.scale;
-    if (kDirectional) {
-        // Outside the scene, places are less precise than within.
-        const float error = kRound * norm1(p);
-        return Question(vec3(dot(frame.right, p), dot(frame.up, p), 0), error,
-                        dot(frame.forward, p) + frame.start + error);
-    }
-    const vec3 size = abs(p);
-    const float largest = max(max(size.x, size.y), size.z);
-    return Question(largest > 0 ? p / largest : p, 0.0, length(p) * (1.0 + kRound));
-}
 
 /// Whether the segment may meet the cluster's triangles: somewhere along it, within the cluster's reach,
 /// between the planes of the slab. Not a number counts as yes.

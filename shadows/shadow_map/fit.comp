@@ -10,6 +10,7 @@
 #include "taskpool/gpu/device.glsl"
 
 #include "shadows/shadow_map/view.glsl"
+#include "taskpool/primitives/ordered.glsl"
 layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Block { FitPush push; };
 
@@ -106,6 +107,6 @@ void main() {
     [[unroll]] for (uint i = 0; i < kViews * kBounds; ++i) {
         const float least = subgroupMin(bounds[i]);
         if (subgroupElect() && least < kLargest)
-            atomicMin(FitRef(push.fit).at.bounds[i], sortable(least));
+            atomicMin(FitRef(push.fit).at.bounds[i], ordered(least));
     }
 }

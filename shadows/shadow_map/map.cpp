@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 std::span<const taskpool::gpu::Shader> shadows_shadow_map_shaders();
@@ -25,19 +24,11 @@ const gpu::Shader& shader(std::string_view path) {
     return gpu::find_shader(shadows_shadow_map_shaders(), path);
 }
 
-bool casts(const TriangleMesh& mesh, std::size_t triangle) {
-    for (int k = 0; k < 3; ++k) {
-        const glm::vec3 p = mesh.corner(triangle, k);
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return false;
-    }
-    return !mesh.degenerate(triangle);
-}
-
 /// By primitive id, of unit length; 0 where there is none.
 std::vector<glm::vec3> normals(const TriangleMesh& mesh) {
     std::vector<glm::vec3> all(mesh.triangle_count(), glm::vec3(0));
     for (std::size_t i = 0; i < all.size(); ++i) {
-        if (!casts(mesh, i)) continue;
+        if (mesh.degenerate(i)) continue;
         const glm::dvec3 a = mesh.corner(i, 0), b = mesh.corner(i, 1), c = mesh.corner(i, 2);
         all[i] = glm::normalize(glm::cross(b - a, c - a));
     }
@@ -71,7 +62,7 @@ void ShadowMap::load(const TriangleMesh& mesh) {
     std::vector<glm::uvec3> casters;
     bounds_ = {};
     for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
-        if (!casts(mesh, i)) continue;
+        if (mesh.degenerate(i)) continue;
         casters.push_back(mesh.triangles[i]);
         bounds_.grow(mesh.triangle_bounds(i));
     }
@@ -197,7 +188,8 @@ std::uint32_t ShadowMap::faces() const {
 
 std::size_t ShadowMap::memory_bytes() const {
     return positions_.size() + triangles_.size() + normals_.size() + casters_.size() +
-           maps_.size() + (target_.handle() ? map_bytes() : 0);
+           fit_buffer_.size() + view_buffer_.size() + maps_.size() +
+           (target_.handle() ? map_bytes() : 0);
 }
 
 }  // namespace shadows::shadow_map

@@ -40,7 +40,7 @@ class ShadowMap {
 
     /// Maps drawn for the last light: 0 to 6, or 0 to 1 of a directional one.
     std::uint32_t faces() const;
-    /// Mesh, lists of casters, maps and the image they are drawn in.
+    /// Mesh, lists of casters, bounds, views, maps and the image they are drawn in; not the answer.
     std::size_t memory_bytes() const;
 
   private:

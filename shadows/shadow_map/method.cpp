@@ -51,9 +51,10 @@ std::span<const Parameter> parameters() {
          {"constant", "slope", "receiver_plane"}},
         {"bias",
          kUsualBias,
-         "how far stored depths move away from the light: in widths of a texel, or for 'slope' in "
-         "texels of the triangle's own slope (-1: 3 for 'constant', 1 for 'slope', 0.25 for "
-         "'receiver_plane')",
+         "how far stored depths move away from the light: in widths of a texel, or with "
+         "bias_mode 'slope' in what the triangle's depth changes over a texel; -1: the usual one, "
+         "3 "
+         "with 'constant', 1 with 'slope', 0.25 with 'receiver_plane'",
          {},
          kUsualBias,
          1024},

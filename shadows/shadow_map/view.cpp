@@ -1,19 +1,14 @@
 #include "shadows/shadow_map/view.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <stdexcept>
+
+#include "taskpool/primitives/ordered.hpp"
 
 namespace shadows::shadow_map {
 namespace {
 
 using structures::geometry::Light;
-
-/// Inverse of sortable() in view.glsl.
-float from_sortable(std::uint32_t key) {
-    return std::bit_cast<float>(key ^ (key >> 31 ? 0x80000000u : 0xffffffffu));
-}
 
 /// What rounding may do to depths of a directional light, which span 0 to 1.
 constexpr float kRounding = 1.f / (1 << 19);
@@ -31,7 +26,9 @@ void fit_axis(float lower, float upper, const MapConfig& config, float& scale, f
 }
 
 View make_view(const std::uint32_t* bounds, const MapConfig& config, bool directional) {
-    const auto bound = [&](std::uint32_t which) { return from_sortable(bounds[which]); };
+    const auto bound = [&](std::uint32_t which) {
+        return taskpool::primitives::from_ordered(bounds[which]);
+    };
     const float near = bound(kNear), far = -bound(kMinusFar);
     View view{};
     fit_axis(bound(kLeft), -bound(kMinusRight), config, view.scale.x, view.offset.x);
@@ -58,14 +55,10 @@ View make_view(const std::uint32_t* bounds, const MapConfig& config, bool direct
 }  // namespace
 
 Frame make_frame(const Light& light, const structures::geometry::Aabb& casters) {
+    structures::geometry::require_usable(light);
     const bool directional = light.type == Light::Type::directional;
     const glm::vec3 v = light.vector;
     const float longest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
-        throw std::invalid_argument("the light's coordinates are not finite");
-    if (directional && longest == 0)
-        throw std::invalid_argument(
-            "the light's direction is zero; expected a vector of any length");
     Frame frame{};
     frame.origin = directional ? casters.empty() ? glm::vec3(0) : casters.center() : v;
     if (!directional) return frame;

@@ -38,10 +38,4 @@ float depth_at(View view, float w) {
     return kDirectional ? view.near - view.per_depth * w : view.near / w;
 }
 
-// Floats as unsigned integers of the same order.
-uint sortable(float value) {
-    const uint bits = floatBitsToUint(value);
-    return bits ^ ((bits >> 31) == 0 ? 0x80000000u : 0xffffffffu);
-}
-
 #endif

@@ -29,7 +29,7 @@ struct View {
     uint slot;   // of the map, among those there are
 };
 
-// Bounds of what a view sees, in the order of kNear ..., each as sortable() of view.glsl makes it.
+// Bounds of what a view sees, in the order of kNear ..., each as an ordered word (ordered.glsl).
 GROVE_CONSTANT uint kNear = 0u, kMinusFar = 1u, kLeft = 2u, kTop = 3u, kMinusRight = 4u,
                     kMinusBottom = 5u, kBounds = 6u;
 struct Fit {

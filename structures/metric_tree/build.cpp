@@ -31,8 +31,11 @@ MetricTreeBuild::~MetricTreeBuild() = default;
 
 std::size_t MetricTreeBuild::required_bytes(std::size_t clusters, std::size_t triangles) const {
     const std::size_t per_cluster = sizeof(Cluster) + sizeof(MetricNode);
+    const std::size_t linker = config_.builder == BuilderKind::insertion
+                                   ? insertion_bytes(*device_, config_)
+                                   : median_bytes(*device_, config_, clusters);
     return clusters * per_cluster + triangles * sizeof(geometry::CornerTriangle) +
-           sizeof(MetricHeader) + linker_bytes(*device_, config_);
+           sizeof(MetricHeader) + linker;
 }
 
 void MetricTreeBuild::prepare(const Clustering& clustering, const geometry::TriangleMesh& mesh) {
@@ -79,7 +82,7 @@ void MetricTreeBuild::load(const Tree& tree) {
 
 void MetricTreeBuild::restart() {
     MetricHeader header{};
-    header.frame = make_frame(light_, bounds_);
+    header.frame = frame();
     header.cluster_count = cluster_count_;
     header_.write(&header, sizeof(header));
 
@@ -91,7 +94,8 @@ void MetricTreeBuild::restart() {
                         gpu::find_shader(structures_metric_tree_shaders(),
                                          "structures/metric_tree/elements.comp"),
                         variant.constants()),
-            make_linker(*device_, config_, variant));
+            config_.builder == BuilderKind::insertion ? make_insertion(*device_, config_, variant)
+                                                      : make_median(*device_, config_, variant));
     active_ = kernels.get();
     active_->linker->restart(
         {nodes_.address(), header_.address(), cluster_count_, header.frame.delta});
@@ -101,10 +105,10 @@ void MetricTreeBuild::restart() {
 void MetricTreeBuild::record(gpu::Recorder& recorder) {
     if (!begun_ && cluster_count_ > 0) {
         struct {
-            std::uint64_t clusters, nodes, header;
+            std::uint64_t clusters, nodes, header, keep;
             std::uint32_t count, cull_facing;
-        } push{clusters_.address(), nodes_.address(), header_.address(), cluster_count_,
-               config_.cull_facing};
+        } push{clusters_.address(), nodes_.address(), header_.address(), keep_,
+               cluster_count_, config_.cull_facing};
         recorder.dispatch(active_->elements, push, std::min(cluster_count_ / 1024 + 1, 8192u));
         recorder.barrier();
     }
@@ -114,6 +118,8 @@ void MetricTreeBuild::record(gpu::Recorder& recorder) {
 
 bool MetricTreeBuild::advance() { return active_->linker->advance(); }
 double MetricTreeBuild::progress() const { return active_ ? active_->linker->progress() : 0; }
+
+LightFrame MetricTreeBuild::frame() const { return make_frame(light_, bounds_); }
 
 MetricTreeView MetricTreeBuild::view() const {
     return {header_.address(), nodes_.address(), clusters_.address(), triangles_.address()};

@@ -9,8 +9,10 @@
 // First every cluster becomes a node without subtrees, or a special one, or is left out
 // (elements.comp); then the nodes are linked:
 //   insertion  one by one, by all lanes at once (insertion.comp; Deves et al. 2018, section 5.3)
-//   median     from the top down: pivot, distances, median, three-way partition, children
-//   (median.comp)
+//   median     from the top down: pivot, delta, distances, three-way partition, children
+//              (median.comp); delta is the median distance, after Uhlmann 1991
+//   cost       likewise; delta is what is expected to cost queries least
+// Trees of the latter two are the same whatever the pool does.
 #pragma once
 
 #include <memory>
@@ -23,13 +25,13 @@
 
 namespace structures::metric_tree {
 
-enum class BuilderKind { insertion, median };
+enum class BuilderKind { insertion, median, cost };
 
 struct BuildConfig {
     BuilderKind builder = BuilderKind::insertion;
     bool cull_facing = false;  ///< leave out clusters that face away from the light: exact for
                                ///< closed meshes of one winding only
-    std::uint64_t seed = 1;    ///< order of insertion, or choice of pivots
+    std::uint64_t seed = 1;    ///< order of insertion, or choice of samples
     taskpool::pool::PoolConfig pool;
 };
 
@@ -47,12 +49,15 @@ class MetricTreeBuild final : public taskpool::pool::Job {
     ~MetricTreeBuild() override;
 
     /// Device memory of a build, pool (before any growth) and output: 128 bytes per cluster and 40
-    /// per triangle beside a constant.
+    /// per triangle beside a constant; from the top down, between 8 and 9 more per cluster.
     std::size_t required_bytes(std::size_t clusters, std::size_t triangles) const;
     /// Throws std::invalid_argument for kLinkMask or more clusters.
     void prepare(const Clustering& clustering, const geometry::TriangleMesh& mesh);
     /// The light of builds from the next restart() on; before, a point light at the origin.
     void set_light(const geometry::Light& light) { light_ = light; }
+    /// Address of a mask with a bit per cluster, of those that builds from now on keep; 0: all. It has
+    /// to be written when the first recorded launch runs.
+    void set_mask(std::uint64_t keep) { keep_ = keep; }
     /// Uploads a tree built elsewhere, from the clustering that was prepared. Throws
     /// std::invalid_argument if the number of nodes is another.
     void load(const Tree& tree);
@@ -64,6 +69,8 @@ class MetricTreeBuild final : public taskpool::pool::Job {
     double progress() const override;
 
     MetricTreeView view() const;
+    /// The frame of set_light() and the mesh.
+    LightFrame frame() const;
     /// Whether some of the clusters prepared are no balls.
     bool has_capsules() const { return capsules_; }
     const BuildConfig& config() const { return config_; }
@@ -82,6 +89,7 @@ class MetricTreeBuild final : public taskpool::pool::Job {
     geometry::Aabb bounds_;
     std::uint32_t cluster_count_ = 0;
     bool capsules_ = false;
+    std::uint64_t keep_ = 0;
     taskpool::gpu::Buffer clusters_, nodes_, triangles_, header_;
     std::unique_ptr<Kernels> kernels_[2][2];  ///< [directional][capsules], made when first needed
     Kernels* active_ = nullptr;

@@ -18,9 +18,14 @@ layout(push_constant, scalar) uniform Push {
     Clusters clusters;
     Nodes nodes;
     Header header;
+    UintArray keep;  // null: all; else a bit per cluster
     uint count;
     uint cull_facing;
 } push;
+
+bool is_kept(uint id) {
+    return uint64_t(push.keep) == 0 || (push.keep.at[id / 32] >> id % 32 & 1u) != 0;
+}
 
 MetricNode make_node(Element element, float min_depth) {
     const float infinity = uintBitsToFloat(0x7f800000u);
@@ -38,22 +43,26 @@ MetricNode make_special(uint id) {
 
 void main() {
     const LightFrame frame = push.header.header.frame;
-    uint culled = 0, special = 0;
+    uint culled = 0, unseen = 0, special = 0;
     for (uint i = gl_WorkGroupID.x * gl_SubgroupSize + gl_SubgroupInvocationID; i < push.count;
          i += gl_NumWorkGroups.x * gl_SubgroupSize) {
         Element element;
         float min_depth;
         const uint role =
             make_element(frame, push.clusters.at[i], push.cull_facing != 0, element, min_depth);
-        if (role == kRoleFacesAway) element.radius = -1;
+        const bool faces_away = role == kRoleFacesAway, kept = is_kept(i);
+        if (faces_away || !kept) element.radius = -1;
         MetricNode node = make_node(element, min_depth);
-        if (role == kRoleSpecial) node = make_special(i);
+        if (role == kRoleSpecial && kept) node = make_special(i);
         push.nodes.at[i] = node;
-        culled += role == kRoleFacesAway ? 1 : 0;
-        special += role == kRoleSpecial ? 1 : 0;
+        culled += faces_away ? 1 : 0;
+        unseen += !faces_away && !kept ? 1 : 0;
+        special += role == kRoleSpecial && kept ? 1 : 0;
     }
     culled = subgroupAdd(culled);
+    unseen = subgroupAdd(unseen);
     special = subgroupAdd(special);
     if (culled > 0 && subgroupElect()) atomicAdd(push.header.header.culled_facing, culled);
+    if (unseen > 0 && subgroupElect()) atomicAdd(push.header.header.culled_unseen, unseen);
     if (special > 0 && subgroupElect()) atomicAdd(push.header.header.special_count, special);
 }

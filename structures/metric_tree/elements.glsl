@@ -10,7 +10,7 @@ const uint kRoleElement = 0, kRoleSpecial = 1, kRoleFacesAway = 2;
 
 /// sin(60 degrees) is 0.866: what looks wider is special, and a little of what does not.
 const float kWidestSine = 0.866;
-/// Share of a distance from the light that it may be too large by, and 28 e more.
+/// Share of a distance from the light, 36 e: its error, that of a query's depth, and room.
 const float kDepthError = 2.1457672e-6;
 
 /// From the origin to the segment ab: from its nearer end, along which distances that cancel are

@@ -1,12 +1,15 @@
 // Insertion of elements into a ternary metric tree, by all lanes at once. F. Deves et al., "Scalable
 // Real-Time Shadows using Clustering and Metric Trees", 2018, section 5.3.
 //
-// The root task owns the places of a permutation of the clusters, so that the order is random: trees
-// of sorted elements are deep. A lane takes an element down from the root: at each node it widens the
-// bounds that speak of the element, takes one of three links, and where there is none, puts its own
-// node there by one compare-and-swap; who loses goes on from the winner. Nothing is locked, and no
-// order matters: nodes' arcs were written by an earlier dispatch, all else are words that change by
-// commuting atomics.
+// The root task owns the places of a permutation of the clusters. Trees of sorted elements are deep, but
+// a random order finds nothing in the caches; so the order is random in the large and sorted in the
+// small (N. Amenta, S. Choi and G. Rote, "Incremental Constructions con BRIO", 2003).
+//
+// A lane takes an element down from the root: at each node it widens the bounds that speak of the
+// element, takes one of three links, and where there is none, puts its own node there by one
+// compare-and-swap; who loses goes on from the winner. Nothing is locked, and validity depends on no
+// order: nodes' arcs were written by an earlier dispatch, all else are words that change by commuting
+// atomics.
 //
 // A node's delta decides where elements go: near if all of it is within delta of the node's arc, far
 // if nothing is, else overlapping. It halves on every near link, so it belongs to the way to a node
@@ -83,15 +86,24 @@ struct Insertion {
     uint depth;     // nodes passed
 };
 
+/// Which cluster comes at `place`, a permutation. In rounds of doubling size: each takes one cluster
+/// out of every so many, by chance which, nearly in their order.
+uint cluster_at(uint place, uint places) {
+    const uint mask = places - 1, bits = uint(findMSB(places)), round = uint(findMSB(place | 1));
+    const uint spaced = place == 0 ? 0 : (2 * (place - (1u << round)) + 1) << (bits - round) >> 1;
+    // Each bit is flipped or not by a hash of the higher ones: S. Laine and T. Karras, "Stratified
+    // Sampling for Stochastic Transparency", 2011, section 3.1.
+    uint x = (bitfieldReverse(spaced) >> (32 - bits)) + pool.client.seed;
+    x ^= x * 0x6c50b47cu;
+    x ^= x * 0xb82f1e52u;
+    x ^= x * 0xc7afe638u;
+    x ^= x * 0x8d22f6e6u;
+    return (bitfieldReverse(x) >> (32 - bits)) & mask;
+}
+
 /// The element of place `place`, at the root. False if it is none.
-bool begin(uint place, uint places, out Insertion insertion) {
-    // Both lines permute the places.
-    const uint mask = places - 1, half_bits = (uint(bitCount(mask)) + 1) / 2;
-    uint id = place;
-    [[unroll]] for (uint round = 0; round < 3; ++round) {
-        id = ((id ^ pool.client.seed) * 0x9e3779b1u + pool.client.seed) & mask;
-        id ^= id >> half_bits;
-    }
+bool begin(uint place, uint places, inout Insertion insertion) {
+    const uint id = cluster_at(place, places);
     if (id >= pool.client.cluster_count) return false;
     const MetricNode node = pool.client.nodes.at[id];
     if (node.radius < 0 || isinf(node.radius)) return false;
@@ -146,28 +158,21 @@ void descend(inout Insertion insertion) {
 void run_chunk(inout Task task, uint phase, uint step, uint chunk) {
     const uint first = chunk * pool.client.chunk_places;
     const uint end = min(first + pool.client.chunk_places, task.places);
-    uint place = first + gl_SubgroupInvocationID;
-    Insertion insertion;
-    bool under_way = false;
     uint turns = 0, inserted = 0, bucketed = 0, depth_max = 0;
-    // A lane that is done with an element takes its next at once.
-    while (under_way || place < end) {
-        ++turns;
-        if (!under_way) {
-            under_way = begin(place, task.places, insertion);
-            place += gl_SubgroupSize;
+    // All lanes take their next together: they are near each other, and go the same ways.
+    for (uint lot = first; lot < end; lot += gl_SubgroupSize) {
+        const uint place = lot + gl_SubgroupInvocationID;
+        Insertion insertion;
+        insertion.depth = 0;
+        if (place < end && begin(place, task.places, insertion)) {
+            while (insertion.link != 0) descend(insertion);
+            ++inserted;
+            if (insertion.depth >= kMaxDepth) ++bucketed;
+            depth_max = max(depth_max, min(insertion.depth + 1, kMaxDepth));
         }
-        if (under_way) {
-            if (insertion.link != 0) descend(insertion);
-            if (insertion.link == 0) {
-                under_way = false;
-                ++inserted;
-                if (insertion.depth >= kMaxDepth) ++bucketed;
-                depth_max = max(depth_max, min(insertion.depth + 1, kMaxDepth));
-            }
-        }
+        turns += 1 + subgroupMax(insertion.depth);
     }
-    pool_spend(subgroupMax(turns));
+    pool_spend(turns);
     pool_progress(end - first);
     inserted = subgroupAdd(inserted);
     bucketed = subgroupAdd(bucketed);

@@ -29,7 +29,7 @@ constexpr std::uint32_t kChunksPerSubgroup = 4;
 
 pool::ClientSpec client_spec(const Variant& variant) {
     return {.task_bytes = sizeof(Task),
-            .chunk_iterations = kLanePlaces * kMaxDepth + 16,
+            .chunk_iterations = kLanePlaces * (kMaxDepth + 1) + 16,
             .constants = variant.constants(),
             .loops = 2};
 }
@@ -73,12 +73,12 @@ class Insertion final : public Linker {
 
 }  // namespace
 
-std::unique_ptr<Linker> make_linker(gpu::Device& device, const BuildConfig& config,
-                                    const Variant& variant) {
+std::unique_ptr<Linker> make_insertion(gpu::Device& device, const BuildConfig& config,
+                                       const Variant& variant) {
     return std::make_unique<Insertion>(device, config, variant);
 }
 
-std::size_t linker_bytes(const gpu::Device& device, const BuildConfig& config) {
+std::size_t insertion_bytes(const gpu::Device& device, const BuildConfig& config) {
     return pool::Pool::required_bytes(device, client_spec({}), config.pool);
 }
 

@@ -35,9 +35,17 @@ class Linker {
     virtual const taskpool::pool::PoolStatus& status() const = 0;
 };
 
-std::unique_ptr<Linker> make_linker(taskpool::gpu::Device& device, const BuildConfig& config,
+/// insertion.comp.
+std::unique_ptr<Linker> make_insertion(taskpool::gpu::Device& device, const BuildConfig& config,
+                                       const Variant& variant);
+/// Bytes of device memory that it takes, before its pool grows.
+std::size_t insertion_bytes(const taskpool::gpu::Device& device, const BuildConfig& config);
+
+/// median.comp, by median or by cost.
+std::unique_ptr<Linker> make_median(taskpool::gpu::Device& device, const BuildConfig& config,
                                     const Variant& variant);
-/// Bytes of device memory that a linker takes, before its pool grows.
-std::size_t linker_bytes(const taskpool::gpu::Device& device, const BuildConfig& config);
+/// Likewise: two numbers per cluster, and a little per chunk of them.
+std::size_t median_bytes(const taskpool::gpu::Device& device, const BuildConfig& config,
+                         std::size_t clusters);
 
 }  // namespace structures::metric_tree

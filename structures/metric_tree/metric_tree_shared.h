@@ -93,17 +93,19 @@ struct MetricHeader {
     uint cluster_count;
     uint special_count;  // clusters that are no elements: around the light or too wide
     uint inserted;       // elements in the tree
-    uint culled_facing;  // clusters left out
+    uint culled_facing;  // clusters left out as they face away from the light
+    uint culled_unseen;  // and as the mask of those to keep says
     uint bucketed;       // elements in lists at the end of chains
     uint depth_max;      // nodes on the longest path, those lists not counted
     uint special;        // link to the first special cluster's node
+    uint reserved;
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(Cluster) == 64 && offsetof(Cluster, axis) == 32);
 static_assert(sizeof(MetricNode) == 64 && offsetof(MetricNode, min_depth) == 48);
 static_assert(sizeof(LightFrame) == 64);
-static_assert(sizeof(MetricHeader) == 96 && offsetof(MetricHeader, root) == 64);
+static_assert(sizeof(MetricHeader) == 104 && offsetof(MetricHeader, root) == 64);
 }  // namespace structures::metric_tree
 #endif
 #undef GROVE_CONSTANT

@@ -53,6 +53,7 @@ class MetricTreeBuilder final : public Builder {
         return build_.required_bytes(triangle_count, triangle_count);
     }
     void prepare(const geometry::TriangleMesh& mesh) override {
+        triangle_count_ = mesh.triangle_count();
         clustering_ = cluster(mesh, cluster_config_);
         build_.prepare(clustering_, mesh);
         const geometry::Light light = light_for(mesh.bounds());
@@ -68,22 +69,18 @@ class MetricTreeBuilder final : public Builder {
         const MetricHeader& header = tree.header;
         const TreeQuality quality = measure(tree);
         const double clusters = header.cluster_count;
-        Samples samples{
-            {"nodes", double(quality.nodes)},
-            {"depth_max", double(quality.depth_max)},
-            {"depth_mean", quality.depth_mean},
-            {"casters_total", clusters},
-            {"casters_inserted", double(header.inserted)},
-            {"capsule_share", clusters > 0 ? clustering_.capsule_count / clusters : 0},
-            {"special_clusters", double(header.special_count)},
-            {"bucketed_clusters", double(header.bucketed)},
-            {"memory_bytes",
-             double(build_.required_bytes(header.cluster_count, clustering_.order.size())),
-             "bytes"}};
+        Samples samples{{"nodes", double(quality.nodes)},
+                        {"depth_max", double(quality.depth_max)},
+                        {"depth_mean", quality.depth_mean},
+                        {"casters_total", clusters},
+                        {"casters_inserted", double(header.inserted)},
+                        {"capsule_share", clusters > 0 ? clustering_.capsule_count / clusters : 0},
+                        {"special_clusters", double(header.special_count)},
+                        {"bucketed_clusters", double(header.bucketed)},
+                        {"degenerate", double(triangle_count_ - clustering_.order.size())}};
         if (!host_) {
             const taskpool::pool::PoolStatus& status = build_.status();
             samples.push_back({"tasks", double(status.state.spawned) + 1});
-            samples.push_back({"launches", double(status.launches)});
             samples.push_back({"pool_peak", double(status.state.peak_live)});
         }
         return samples;
@@ -93,7 +90,7 @@ class MetricTreeBuilder final : public Builder {
     }
     /// 0 for insertion, whose trees depend on who came first.
     std::uint64_t fingerprint() override {
-        if (!host_) return 0;
+        if (!host_ && build_.config().builder == BuilderKind::insertion) return 0;
         Hash hash;
         const Tree tree = build_.read_back();
         hash.add(tree.header);
@@ -142,6 +139,7 @@ class MetricTreeBuilder final : public Builder {
     MetricTreeBuild build_;
     std::optional<HostBuild> host_;
     Clustering clustering_;
+    std::size_t triangle_count_ = 0;
 };
 
 std::unique_ptr<Builder> create(taskpool::gpu::Device& device, const Settings& settings) {

@@ -6,8 +6,8 @@ std::vector<Parameter> tree_parameters() {
     return {
         {"build",
          std::string("insertion"),
-         "how the tree is built: insertion on the GPU; the others on the CPU",
-         {"insertion", "cpu_median", "cpu_cost"}},
+         "how the tree is built: on the GPU, or on the CPU",
+         {"insertion", "median", "cost", "cpu_median", "cpu_cost"}},
         {"cluster_size", std::int64_t{16}, "triangles in a cluster at most", {}, 1, 64},
         {"capsules", true, "long clusters become capsules, not balls"},
         {"cull_facing", false,
@@ -34,6 +34,9 @@ ClusterConfig cluster_config(const Settings& settings) {
 
 BuildConfig build_config(const Settings& settings) {
     BuildConfig config;
+    const std::string& build = settings.text("build");
+    if (build == "median") config.builder = BuilderKind::median;
+    if (build == "cost") config.builder = BuilderKind::cost;
     config.cull_facing = settings.boolean("cull_facing");
     config.seed = static_cast<std::uint64_t>(settings.integer("seed"));
     config.pool.policy = taskpool::pool::policy_from(settings.text("policy"));
@@ -44,7 +47,7 @@ BuildConfig build_config(const Settings& settings) {
 
 std::optional<ReferenceConfig> reference_config(const Settings& settings) {
     const std::string& build = settings.text("build");
-    if (build == "insertion") return std::nullopt;
+    if (!build.starts_with("cpu_")) return std::nullopt;
     ReferenceConfig config;
     config.split = build == "cpu_cost" ? Split::cost : Split::median;
     config.cull_facing = settings.boolean("cull_facing");

@@ -185,7 +185,7 @@ class Validator {
         equal("cluster_count", header.cluster_count, clusters_.size());
         equal("special_count", header.special_count, tree_.special.size());
         equal("inserted", header.inserted, shape_.preorder.size());
-        equal("culled_facing", header.culled_facing, left_out_);
+        equal("culled clusters", header.culled_facing + header.culled_unseen, left_out_);
         std::uint32_t depth = 0;
         for (const std::uint32_t d : shape_.depth) depth = std::max(depth, d);
         // Nodes in lists do not count as depth.

@@ -18,9 +18,13 @@ uint leaf_count(uint link) { return (link & ~kLeafBit) >> kLeafCountShift; }
 
 // The grid seen from another origin, ready to decode: lower = base_lower + cell * (bits & 0xffff),
 // upper = base_upper + cell * (bits >> 16). The bases are widened so that the decoded box contains
-// the true one as the exact test sees it, from points at most `reach` away from `from`. With
-// R = |origin| + |from| + 65,535 cell + reach, decoding rounds three times, each by at most 2^-24 R;
-// the exact test sees corners off by at most 11 * 2^-24 R (candidate.glsl). 2^-19 R is twice that.
+// the true one, and still does for those who ask which segments meet it, from points no farther
+// than `reach` from `from`. With e = 2^-24 and R = |origin| + |from| + 65,535 cell + reach,
+// decoding rounds four times, each by at most e R. A slab test (t = bits * (cell / d) + base / d)
+// has 6 e R from the reciprocal of a rounded difference and six more roundings; a beam compares x
+// with slope * z and adds three, the rounding of its slopes being in the slopes. So 12 e R is all
+// that is needed, as what is decided about triangles is exact. 2^-19 R, which is 32 e R, is more
+// than twice that.
 struct Grid {
     vec3 base_lower;
     vec3 base_upper;

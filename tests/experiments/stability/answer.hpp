@@ -21,6 +21,7 @@ inline experiments::stability::Marks answer(shadows::Method& method,
                                  judged.image.height);
     shadows::Visibility visible;
     method.prepare(judged.scene.mesh);
+    method.expect(points);
     method.build(judged.scene.light);
     method.query(points, visible);
     return judged.mark(visible);
