@@ -10,7 +10,7 @@ namespace {
 
 using namespace taskpool;
 
-constexpr std::uint32_t kChunk = 512, kMeans = 8, kLoops = 32;  // as in split.comp
+constexpr std::uint32_t kChunk = 512, kMeans = 8, kLoops = 32;  // as in cluster_split.comp
 constexpr std::uint32_t kCodeBits = 48;
 
 // The kernel's struct Task and struct Client.
@@ -47,11 +47,11 @@ ClusterBuild::ClusterBuild(gpu::Device& device, const ClusterConfig& config,
                            const pool::PoolConfig& pool)
     : device_(&device),
       config_(config),
-      codes_kernel_(device, shader("codes.comp")),
-      fit_kernel_(device, shader("fit.comp"), {{16, config.capsules}}),
+      codes_kernel_(device, shader("cluster_codes.comp")),
+      fit_kernel_(device, shader("cluster_fit.comp"), {{16, config.capsules}}),
       sort_(device, primitives::RadixSort::Key::u64),
       compact_(device),
-      pool_(device, shader("split.comp"), client_spec(device), pool),
+      pool_(device, shader("cluster_split.comp"), client_spec(device), pool),
       counts_(device, 2 * sizeof(std::uint32_t), "cluster counts") {
     check(config);
 }

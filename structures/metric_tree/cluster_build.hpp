@@ -5,9 +5,9 @@
 //     taskpool::pool::run(device, build);
 //     Clustering clusters = build.read_back();      // sound as validate() has it
 //
-// Morton codes and their sort, chunks split by k-means (split.comp), then volumes in single
-// precision (fit.comp). The clusters are not those of cluster(), but of the same making; the same
-// mesh always gives the same ones on a device.
+// Morton codes and their sort, chunks split by k-means (cluster_split.comp), then volumes in single
+// precision (cluster_fit.comp). The clusters are not those of cluster(), but of the same making;
+// the same mesh always gives the same ones on a device.
 #pragma once
 
 #include "structures/metric_tree/clustering.hpp"
