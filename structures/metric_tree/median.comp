@@ -135,15 +135,7 @@ void reach_depth(uint depth) {
     if (subgroupElect()) atomicMax(pool.client.header.header.depth_max, depth);
 }
 
-/// Sum of the lanes' values up to this one; by shuffles, as lavapipe makes loops of scans.
-uint sum_to_here(uint mine) {
-    [[unroll]] for (uint apart = 1; apart < kLanes; apart *= 2) {
-        const uint before = subgroupShuffle(mine, gl_SubgroupInvocationID - apart);
-        mine += gl_SubgroupInvocationID < apart ? 0 : before;
-    }
-    return mine;
-}
-
+#include "taskpool/primitives/lanes.glsl"
 #include "structures/metric_tree/median_partition.glsl"
 #include "structures/metric_tree/median_choice.glsl"
 #include "structures/metric_tree/median_leaf.glsl"
