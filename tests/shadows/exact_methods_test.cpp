@@ -25,7 +25,8 @@ struct Configuration {
     bool usual() const { return keys.empty(); }
     std::string name() const {
         std::string name = method;
-        for (const auto& [key, value] : keys) name += '_' + key + '_' + structures::to_string(value);
+        for (const auto& [key, value] : keys)
+            name += '_' + key + '_' + structures::to_string(value);
         return name;
     }
 };
@@ -34,25 +35,29 @@ void PrintTo(const Configuration& configuration, std::ostream* out) {
     *out << configuration.name();
 }
 
-/// Each value but the default, one at a time.
+/// Each value but the default, one at a time. Trees are asked by single rays, whose kernels compile
+/// in the least time.
 std::vector<Configuration> variants() {
     std::vector<Configuration> all;
-    const auto choices = [&](const char* method, const char* key) {
+    const Keys by_rays{{"query", std::string("lane")}};
+    const auto add = [&](const char* method, Keys keys, const char* key, const Value& value) {
+        keys[key] = value;
+        all.push_back({method, std::move(keys)});
+    };
+    const auto choices = [&](const char* method, const Keys& keys, const char* key) {
         for (const structures::Parameter& parameter : find_method(method).parameters())
             if (parameter.name == key)
                 for (const std::string& choice : parameter.choices)
-                    if (Value(choice) != parameter.fallback)
-                        all.push_back({method, {{key, choice}}});
+                    if (Value(choice) != parameter.fallback) add(method, keys, key, choice);
     };
-    choices("bvh", "query");
-    for (std::int64_t resolution : {1, 64, 512})
-        all.push_back({"izb", {{"resolution", resolution}}});
-    choices("metric_tree", "query");
-    choices("metric_tree", "build");
-    all.push_back({"metric_tree", {{"capsules", false}}});
-    for (std::int64_t size : {8, 32}) all.push_back({"metric_tree", {{"cluster_size", size}}});
+    choices("bvh", {}, "query");
+    for (std::int64_t resolution : {1, 64, 512}) add("izb", {}, "resolution", resolution);
+    choices("metric_tree", {}, "query");
+    choices("metric_tree", by_rays, "build");
+    add("metric_tree", by_rays, "capsules", false);
+    for (std::int64_t size : {8, 32}) add("metric_tree", by_rays, "cluster_size", size);
     for (const char* test : {"depth_test", "interval_test", "slab_test"})
-        all.push_back({"metric_tree", {{test, false}}});
+        add("metric_tree", {}, test, false);
     return all;
 }
 

@@ -287,7 +287,7 @@ Scenes points_on_lines() {
     return scenes;
 }
 
-Scenes exact_zeros() { return {in_one_plane(), behind_middles_of_edges()}; }
+Scenes exact_zeros() { return {in_one_plane(40), behind_middles_of_edges()}; }
 
 }  // namespace
 
@@ -428,7 +428,7 @@ ExactScene cables() {
     return scene;
 }
 
-ExactScene in_one_plane() {
+ExactScene in_one_plane(int triangles) {
     Numbers random(new_seed());
     ExactScene scene = make_scene("in one plane", 64, 32);
     const auto whole = [&] { return std::round(500 * (2 * random.unit() - 1)); };
@@ -436,7 +436,7 @@ ExactScene in_one_plane() {
         const float across = whole(), along = whole();
         return across * glm::vec3(1, 2, 4) + along * glm::vec3(3, -1, 5);
     };
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < triangles; ++i) {
         const glm::vec3 a = in_plane(), b = in_plane(), c = in_plane();
         add_triangle(scene.mesh, a, b, c);
     }

@@ -65,7 +65,7 @@ ExactScene cables();
 
 // What double precision cannot tell:
 /// The light and all points in the plane of all triangles, which is parallel to no axis.
-ExactScene in_one_plane();
+ExactScene in_one_plane(int triangles);
 /// Segments through the middle of an edge, which belongs to the triangle.
 ExactScene behind_middles_of_edges();
 

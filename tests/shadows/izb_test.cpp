@@ -89,7 +89,7 @@ TEST_F(IzbShadow, FullListsLoseNothing) {
 
 TEST_F(IzbShadow, WhatDoublePrecisionCannotTell) {
     // More pairs than their list has room for.
-    const ExactScene flat = tests::in_one_plane();
+    const ExactScene flat = tests::in_one_plane(300);
     const std::vector<bool> nothing = tests::brute_force(flat);
     for (std::uint32_t resolution : {0u, 1u}) {
         const Answer answer = run(flat, {.resolution = resolution});
