@@ -118,13 +118,13 @@ void beam_walk() {
         uint near = 0, far = 0, over = 0;
         uint first = 0, count = 0;
         if (link != 0) {
-            const MetricNode node = push.structure.nodes.at[node_of(link)];
+            const MetricNode node = metric_node(push.structure.nodes, node_of(link));
             answer = ask(question, node, kUseDepth, kUseInterval);
             near = node.near;
             far = node.far;
             over = node.over;
             if (answer.own) {
-                const Cluster cluster = push.structure.clusters.at[node_of(link)];
+                const Cluster cluster = cluster_at(push.structure.clusters, node_of(link));
                 if (beam_meets_cluster(cluster)) {
                     first = cluster.first;
                     count = cluster.count;

@@ -13,7 +13,7 @@ const uint kLaneStack = 64u;
 /// cannot tell.
 bool cluster_occludes(uint id, Segment s, uint own_primitive, bool last_resort, inout bool unsure,
                       inout Walk walk) {
-    const Cluster cluster = push.structure.clusters.at[id];
+    const Cluster cluster = cluster_at(push.structure.clusters, id);
     if (kUseSlabs && !meets_slab(cluster, s)) return false;
     // Guarded: drivers may run the body of a loop that has nothing to do.
     uint i = 0;
@@ -59,7 +59,7 @@ bool lane_occluded(Segment segment, uint own_primitive, bool last_resort, inout 
         --walk.steps;
         ++walk.nodes;
         const uint id = node_of(link);
-        const MetricNode node = push.structure.nodes.at[id];
+        const MetricNode node = metric_node(push.structure.nodes, id);
         const Answer answer = ask(question, node, kUseDepth, kUseInterval);
         if (answer.own && !returning &&
             cluster_occludes(id, segment, own_primitive, last_resort, unsure, walk))

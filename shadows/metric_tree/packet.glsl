@@ -22,7 +22,7 @@ bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout Walk
         --walk.steps;
         ++walk.nodes;
         const uint id = node_of(subgroupShuffle(stack_pop(1), 0));
-        const MetricNode node = push.structure.nodes.at[id];
+        const MetricNode node = metric_node(push.structure.nodes, id);
         Answer answer = ask(question, node, kUseDepth, kUseInterval);
         const bool alive = asked && !hit;
         const uint wanted = subgroupOr(
@@ -30,7 +30,7 @@ bool packet_occluded(Segment segment, uint own_primitive, bool asked, inout Walk
                    : (answer.own ? 1 : 0) | (answer.near ? 2 : 0) | (answer.far ? 4 : 0) |
                          (answer.over ? 8 : 0));
         if ((wanted & 1u) != 0) {
-            const Cluster cluster = push.structure.clusters.at[id];
+            const Cluster cluster = cluster_at(push.structure.clusters, id);
             const bool meets = alive && answer.own && (!kUseSlabs || meets_slab(cluster, segment));
             if (subgroupAny(meets)) {
                 uint i = 0;

@@ -10,7 +10,7 @@ std::vector<Parameter> tree_parameters() {
          std::string("insertion"),
          "how the tree is built: on the GPU, or on the CPU",
          {"insertion", "median", "cost", "cpu_median", "cpu_cost"}},
-        {"cluster_size", std::int64_t{16}, "triangles in a cluster at most", {}, 1, 64},
+        {"cluster_size", std::int64_t{32}, "triangles in a cluster at most", {}, 1, 64},
         {"clustering",
          std::string("cpu"),
          "where triangles are clustered, once per mesh",

@@ -16,6 +16,30 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Cl
     Cluster at[];
 };
 
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer MetricWords {
+    uint64_t at[];
+};
+
+// Nodes and clusters read by words of 64 bits: gathers go word by word on a CPU device.
+MetricNode metric_node(MetricNodes nodes, uint id) {
+    MetricWords words = MetricWords(uint64_t(nodes) + uint64_t(id) * 64);
+    uvec2 w[8];
+    [[unroll]] for (uint i = 0; i < 8; ++i) w[i] = unpackUint2x32(words.at[i]);
+    return MetricNode(uintBitsToFloat(uvec3(w[0], w[1].x)), uintBitsToFloat(w[1].y),
+                      uintBitsToFloat(uvec3(w[2], w[3].x)), uintBitsToFloat(w[3].y), w[4].x, w[4].y,
+                      w[5].x, w[5].y, uintBitsToFloat(w[6].x), uintBitsToFloat(w[6].y),
+                      uintBitsToFloat(w[7].x), uintBitsToFloat(w[7].y));
+}
+Cluster cluster_at(Clusters clusters, uint id) {
+    MetricWords words = MetricWords(uint64_t(clusters) + uint64_t(id) * 64);
+    uvec2 w[8];
+    [[unroll]] for (uint i = 0; i < 8; ++i) w[i] = unpackUint2x32(words.at[i]);
+    return Cluster(uintBitsToFloat(uvec3(w[0], w[1].x)), uintBitsToFloat(w[1].y),
+                   uintBitsToFloat(uvec3(w[2], w[3].x)), uintBitsToFloat(w[3].y),
+                   uintBitsToFloat(uvec3(w[4], w[5].x)), uintBitsToFloat(w[5].y),
+                   uintBitsToFloat(w[6].x), w[6].y, w[7].x, w[7].y);
+}
+
 /// Index of the node or cluster that a link, not 0, leads to.
 uint node_of(uint link) { return (link & kLinkMask) - 1; }
 
