@@ -26,7 +26,7 @@ struct Client {
 };
 static_assert(sizeof(Task) == 72 && sizeof(Client) == 48);
 
-constexpr std::uint32_t kLoops = 24;  // see ClientSpec::loops
+constexpr std::uint32_t kLoops = 40;  // see ClientSpec::loops
 
 std::size_t scratch_words(std::size_t clusters) {
     return (clusters / kChunkElements + 1) * kScratchWords;
@@ -51,8 +51,8 @@ pool::ClientSpec client_spec(const gpu::Device& device, BuilderKind builder,
     const std::uint32_t turn = pool::turn_iterations(device, kLoops);
     std::uint32_t subtree = 0;
     for (std::uint32_t count = kSubtreeElements; count > leaf; --count)
-        subtree += count + choice(count, lanes) + 4 * (count / lanes + 1) + 2 * turn;
-    for (std::uint32_t count = leaf; count-- > 0;) subtree += 3 * leaf + choice(count, 1) + turn;
+        subtree += 4 * count + choice(count, lanes) + 4 * (count / lanes + 1) + 2 * turn;
+    for (std::uint32_t count = leaf; count-- > 0;) subtree += 5 * leaf + choice(count, 1) + turn;
     const std::uint32_t large =
         kPivotSample + choice(kDeltaSample, lanes) + 8 * kChunkElements / lanes;
     // Scans in transitions: enough for 16384 chunks by 8 lanes.

@@ -128,5 +128,5 @@ void choose(inout Task task) {
     subgroup_sync();
     task.delta = listed ? -1.0 : subgroupShuffle(best.delta, 0);
     if (is_large(range)) clear_tally(range);
-    pool_spend(3 * samples + sampled / kLanes + 1 + choice_iterations(sampled, kLanes));
+    pool_spend(4 * samples + sampled / kLanes + 1 + choice_iterations(sampled, kLanes));
 }
