@@ -49,9 +49,9 @@ struct Choice {
 };
 
 uint candidates_of(uint count) { return kByCost ? 3 * min(kQuantiles, count) : count; }
-/// Loop iterations of best_delta().
+/// Loop iterations of best_delta(), with each loop's last, in which it ends.
 uint choice_iterations(uint count, uint stride) {
-    return (candidates_of(count) / stride + 1) * ((kByCost ? 2 : 1) * count + 1);
+    return (candidates_of(count) / stride + 2) * ((kByCost ? 2 : 1) * (count + 1) + 1);
 }
 
 /// The best delta for the `count` reaches from `from` on, among every `stride`-th candidate.
@@ -97,13 +97,14 @@ void choose(inout Task task) {
     }
     float merit = merit_of(row, samples);
     uint lane = gl_SubgroupInvocationID;  // of equal ones, the lowest
-    [[unroll]] for (uint apart = kLanes / 2; apart > 0; apart /= 2) {
-        const float other = subgroupShuffleXor(merit, apart);
-        const uint from = subgroupShuffleXor(lane, apart);
-        const bool take = other > merit || (other == merit && from < lane);
-        merit = take ? other : merit;
-        lane = take ? from : lane;
-    }
+    [[unroll]] for (uint k = 0; k < kLaneBits; ++k)
+        if (1u << k < kLanes) {
+            const float other = subgroupShuffleXor(merit, 1u << k);
+            const uint from = subgroupShuffleXor(lane, 1u << k);
+            const bool take = other > merit || (other == merit && from < lane);
+            merit = take ? other : merit;
+            lane = take ? from : lane;
+        }
     subgroup_sync();
     lane = subgroupShuffle(lane, 0);  // also if something is not a number
     task.pivot = subgroupShuffle(place, lane);
@@ -119,14 +120,15 @@ void choose(inout Task task) {
     }
     subgroup_sync();
     Choice best = best_delta(0, sampled, gl_SubgroupInvocationID, kLanes);
-    [[unroll]] for (uint apart = kLanes / 2; apart > 0; apart /= 2) {
-        const Choice other = Choice(subgroupShuffleXor(best.cost, apart),
-                                    subgroupShuffleXor(best.delta, apart));
-        if (other.cost < best.cost || (other.cost == best.cost && other.delta < best.delta))
-            best = other;
-    }
+    [[unroll]] for (uint k = 0; k < kLaneBits; ++k)
+        if (1u << k < kLanes) {
+            const Choice other = Choice(subgroupShuffleXor(best.cost, 1u << k),
+                                        subgroupShuffleXor(best.delta, 1u << k));
+            if (other.cost < best.cost || (other.cost == best.cost && other.delta < best.delta))
+                best = other;
+        }
     subgroup_sync();
     task.delta = listed ? -1.0 : subgroupShuffle(best.delta, 0);
     if (is_large(range)) clear_tally(range);
-    pool_spend(4 * samples + sampled / kLanes + 1 + choice_iterations(sampled, kLanes));
+    pool_spend(4 * (samples + 1) + sampled / kLanes + 2 + choice_iterations(sampled, kLanes));
 }

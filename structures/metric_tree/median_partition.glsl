@@ -10,14 +10,14 @@ const uint kNearCount = 0, kFarCount = 1, kBoundsWord = 2;
 uint scratch_word(uint begin) { return begin / kChunkElements * kScratchWords; }
 
 float lane_min(float v) {
-    [[unroll]] for (uint apart = kLanes / 2; apart > 0; apart /= 2)
-        v = min(v, subgroupShuffleXor(v, apart));
+    [[unroll]] for (uint k = 0; k < kLaneBits; ++k)
+        if (1u << k < kLanes) v = min(v, subgroupShuffleXor(v, 1u << k));
     return v;
 }
 float lane_max(float v) { return -lane_min(-v); }
 uint lane_max(uint v) {
-    [[unroll]] for (uint apart = kLanes / 2; apart > 0; apart /= 2)
-        v = max(v, subgroupShuffleXor(v, apart));
+    [[unroll]] for (uint k = 0; k < kLaneBits; ++k)
+        if (1u << k < kLanes) v = max(v, subgroupShuffleXor(v, 1u << k));
     return v;
 }
 uint lane_sum(uint v) { return subgroupShuffle(sum_to_here(v), kLanes - 1); }
@@ -41,7 +41,7 @@ void gather_chunk(uint begin, uint end, bool counting) {
         pool.client.scratch.at[word] = int(target);
         pool_progress(end - begin - target);
     }
-    pool_spend((end - begin) / kLanes + 1);
+    pool_spend((end - begin) / kLanes + 2);
 }
 
 /// Exclusive scan of word `word` of a range's chunks; returns the sum.
@@ -113,7 +113,7 @@ void classify_chunk(inout Task task, uint begin, uint end) {
                     lane_max(bounds.over_max), lane_min(bounds.min_depth));
     near_count = lane_sum(near_count);
     far_count = lane_sum(far_count);
-    pool_spend((end - begin) / kLanes + 1);
+    pool_spend((end - begin) / kLanes + 2);
     if (!is_large(task.range)) {
         task.bounds = bounds;
         task.counts =
@@ -148,7 +148,7 @@ void partition_chunk(Task task, uint begin, uint end) {
         const uint word = ids_of(task.range.side).at[min(mine, end - 1)];
         const uint part = word >> kPartShift;
         const bool used = mine < end && mine != task.pivot;
-        // Three counts in a word: no more than 64 lanes.
+        // Three counts in a word: there are fewer than 1024 lanes.
         const uint to_here = sum_to_here(used ? 1u << 10 * part : 0);
         const uint all = subgroupShuffle(to_here, kLanes - 1);
         const uint before = bitfieldExtract(to_here, int(10 * part), 10) - 1;
@@ -158,7 +158,7 @@ void partition_chunk(Task task, uint begin, uint end) {
         far_at += bitfieldExtract(all, 10, 10);
         over_at += bitfieldExtract(all, 20, 10);
     }
-    pool_spend((end - begin) / kLanes + 1);
+    pool_spend((end - begin) / kLanes + 2);
 }
 
 // ---- Lists ----------------------------------------------------------------------------------------
@@ -187,5 +187,5 @@ void list_chunk(Task task, uint begin, uint end) {
             atomicAdd(pool.client.header.header.bucketed, task.range.count - 1);
     }
     pool_progress(end - begin);
-    pool_spend((end - begin) / kLanes + 1);
+    pool_spend((end - begin) / kLanes + 2);
 }

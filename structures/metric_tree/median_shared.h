@@ -27,7 +27,7 @@ MEDIAN_CONSTANT uint kPhaseEnd = 8;        // no phase: the range is done
 /// In a chunk at least, unless it is the range's only one.
 MEDIAN_CONSTANT uint kChunkElements = 256;
 /// In a range that one chunk builds the subtree of, at most.
-MEDIAN_CONSTANT uint kSubtreeElements = 24;
+MEDIAN_CONSTANT uint kSubtreeElements = 20;
 /// In a range that a subgroup holds in its lanes, at most.
 MEDIAN_CONSTANT uint kMostLeafRange = 16;
 /// Candidates for a pivot, no more than lanes; elements that they are judged by, and those that
