@@ -37,6 +37,8 @@ MEDIAN_CONSTANT uint kPivotSample = 32;
 MEDIAN_CONSTANT uint kDeltaSample = 64;
 /// Distances of each kind that are tried as delta by cost.
 MEDIAN_CONSTANT uint kQuantiles = 8;
+/// In a range that is split even if that takes but its pivot off, at most.
+MEDIAN_CONSTANT uint kChainElements = 64;
 /// Pivots tried before what is left becomes a list.
 MEDIAN_CONSTANT uint kTries = 2;
 /// Of a chunk; see median_partition.glsl.
