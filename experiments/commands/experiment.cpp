@@ -25,14 +25,15 @@ RunOutcome run_experiment(taskpool::gpu::Device& device, const config::Config& c
         : config.kind == "build"   ? run_builds(session)
                                    : run_shadows(session);
         // From the file: it also holds what earlier sessions of a resumed run have found.
-        outcome.results = summarise(read_samples(folder.samples()));
+        const std::vector<Row> rows = read_samples(folder.samples());
+        outcome.results = summarise(rows);
         for (const std::string& line : config.stability ? broken_stability_claims(outcome.results)
                                                         : broken_claims(outcome.results))
             session.fail(line);
         outcome.failures = session.failures;
         write_summary(folder, outcome.results);
         close_run(folder, outcome.failures.empty() ? 0 : 1, outcome.failures);
-        report::write_report(path, outcome.results);
+        report::write_report(path, rows, outcome.results);
     } catch (const std::exception& error) {
         progress.log_error(error.what());
         // The manifest says how the run ended if the disk still takes it; the first error counts.

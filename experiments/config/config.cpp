@@ -4,8 +4,10 @@
 
 #include <algorithm>
 
+#include "experiments/config/path.hpp"
 #include "experiments/config/sections.hpp"
 #include "experiments/config/table.hpp"
+#include "experiments/config/view.hpp"
 
 namespace experiments::config {
 namespace {
@@ -75,36 +77,28 @@ void check_unique(const Config& config, const Node& where) {
                                         config.methods[i].name, config.methods[i].variant));
 }
 
-nlohmann::json to_json(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-
-nlohmann::json to_json(const structures::Settings& settings) {
+nlohmann::json settings_json(const structures::Settings& settings) {
     nlohmann::json json = nlohmann::json::object();
     for (const auto& [key, value] : settings.values())
         json[key] = std::visit([](const auto& v) { return nlohmann::json(v); }, value);
     return json;
 }
 
-nlohmann::json to_json(const Scene& scene) {
+nlohmann::json scene_json(const Scene& scene) {
     nlohmann::json json = {{"name", scene.name}, {"resolution", {scene.width, scene.height}}};
     if (!scene.file.empty()) json["file"] = scene.file.string();
     if (!scene.generator.empty()) {
         json["generator"] = scene.generator;
-        json["settings"] = to_json(scene.settings);
+        json["settings"] = settings_json(scene.settings);
     }
     if (!scene.views.empty()) json["views"] = scene.views.string();
     if (!scene.view.empty()) json["view"] = scene.view;
-    if (scene.camera)
-        json["camera"] = {{"eye", to_json(scene.camera->eye)},
-                          {"target", to_json(scene.camera->target)},
-                          {"up", to_json(scene.camera->up)},
-                          {"fov_y_degrees", scene.camera->fov_y_degrees}};
-    using structures::geometry::Light;
-    if (scene.light)
-        json["light"] =
-            scene.light->type == Light::Type::point
-                ? nlohmann::json{{"type", "point"}, {"position", to_json(scene.light->vector)}}
-                : nlohmann::json{{"type", "directional"},
-                                 {"direction", to_json(scene.light->vector)}};
+    if (scene.camera) json["camera"] = to_json(*scene.camera);
+    if (scene.light) json["light"] = to_json(*scene.light);
+    if (scene.path) {
+        json["path"] = to_json(*scene.path);
+        json["path"]["pictures"] = scene.all_pictures;
+    }
     return json;
 }
 
@@ -147,8 +141,11 @@ Config resolve(const Node& root, const std::filesystem::path& file, const Catalo
     table.finish();
 
     if (!config.stability)
-        for (const Node& node : list_of_tables(document, "scene"))
+        for (const Node& node : list_of_tables(document, "scene")) {
             read_scenes(node, catalogue, config.seed, config.scenes);
+            if (const Node* path = node.find("path"); path && config.kind != "shadows")
+                fail(*path, "'path' is a key of kind 'shadows' alone; leave it out");
+        }
     else if (const Node* scene = document.find("scene"))
         fail(*scene, "kind 'stability' has scenes of its own; remove [[scene]]");
     const bool shadows = config.kind != "build";
@@ -181,11 +178,11 @@ nlohmann::json to_json(const Config& config) {
                            {"methods", nlohmann::json::array()}};
     json["reference"] = config.methods[config.reference].label();
     if (config.stability) json["stability"] = to_json(*config.stability);
-    for (const Scene& scene : config.scenes) json["scenes"].push_back(to_json(scene));
+    for (const Scene& scene : config.scenes) json["scenes"].push_back(scene_json(scene));
     for (const Method& method : config.methods)
         json["methods"].push_back({{"name", method.name},
                                    {"variant", method.variant},
-                                   {"settings", to_json(method.settings)}});
+                                   {"settings", settings_json(method.settings)}});
     return json;
 }
 

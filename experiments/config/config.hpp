@@ -15,6 +15,7 @@
 #include "experiments/config/catalogue.hpp"
 #include "experiments/config/node.hpp"
 #include "experiments/config/stability.hpp"
+#include "experiments/scenes/path.hpp"
 #include "experiments/scenes/views_file.hpp"
 #include "structures/geometry/light.hpp"
 
@@ -27,9 +28,13 @@ struct Scene {
     structures::Settings settings{};  ///< of the generator
     std::optional<scenes::Camera> camera{};  ///< absent: the scene's own view
     std::optional<structures::geometry::Light> light{};
-    std::filesystem::path views{};  ///< file of named views, or empty
-    std::string view{};             ///< the view of that file
+    std::filesystem::path views{};       ///< file of named views, or empty
+    std::string view{};                  ///< the view of that file
+    std::optional<scenes::Path> path{};  ///< kind "shadows": goes before camera, light and view
+    bool all_pictures = false;           ///< of every frame, not the first alone
     std::uint32_t width = 1280, height = 720;
+
+    int frames() const { return path ? path->frames : 1; }
 };
 
 struct Method {

@@ -4,37 +4,13 @@
 
 #include <algorithm>
 
+#include "experiments/config/path.hpp"
 #include "experiments/config/sweep.hpp"
 #include "experiments/config/table.hpp"
+#include "experiments/config/view.hpp"
 
 namespace experiments::config {
 namespace {
-
-using structures::geometry::Light;
-
-scenes::Camera read_camera(const Node& node) {
-    Table table(node, "'camera'");
-    scenes::Camera camera;
-    camera.eye = table.required("eye", table.vector("eye"));
-    camera.target = table.required("target", table.vector("target"));
-    camera.up = table.vector("up").value_or(glm::vec3(0, 1, 0));
-    camera.fov_y_degrees = float(table.real("fov_y_degrees").value_or(camera.fov_y_degrees));
-    table.finish();
-    if (const std::string fault = camera.fault(); !fault.empty()) fail(node, "'camera': " + fault);
-    return camera;
-}
-
-Light read_light(const Node& node) {
-    Table table(node, "'light'");
-    const std::string type = table.required("type", table.choice("type", {"point", "directional"}));
-    const bool point = type == "point";
-    const std::string key = point ? "position" : "direction";
-    const Light light{point ? Light::Type::point : Light::Type::directional,
-                      table.required(key, table.vector(key))};
-    table.finish();
-    if (!point && light.vector == glm::vec3(0)) fail(node, "'direction' must not be zero");
-    return light;
-}
 
 void read_resolution(Table& table, Scene& scene) {
     const Node* node = table.find("resolution");
@@ -102,13 +78,24 @@ Scene read_scene(const Combination& combination, const Catalogue& catalogue, std
         fail(*table.find("file"),
              fmt::format("scene file '{}' does not exist; check the path", scene.file.string()));
     const auto name = table.text("name");
-    if (const Node* camera = table.find("camera")) scene.camera = read_camera(*camera);
+    if (const Node* camera = table.find("camera")) {
+        Table keys(*camera, "'camera'");
+        scene.camera = read_camera(keys);
+        keys.finish();
+    }
     if (const Node* light = table.find("light")) scene.light = read_light(*light);
     scene.views = table.path("views").value_or("");
     scene.view = table.text("view").value_or("");
     read_resolution(table, scene);
-    if (const Node* path = table.find("path"))
-        fail(*path, "'path' (an animation) is not available in this version; leave it out");
+    if (const Node* path = table.find("path")) {
+        const Animation animation = read_path(*path);
+        scene.path = animation.path;
+        scene.all_pictures = animation.all_pictures;
+        const scenes::Keyframe& key = scene.path->keys[0];
+        if ((key.camera && scene.camera) || (key.light && scene.light))
+            fail(*path, fmt::format("'path' excludes '{0}': its keys have {0}s",
+                                    key.camera && scene.camera ? "camera" : "light"));
+    }
     if (!scene.view.empty() && scene.views.empty())
         fail(*table.find("view"), "'view' names a view of the file 'views', which is not given");
     if (!scene.views.empty() && (scene.camera || scene.light))

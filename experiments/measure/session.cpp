@@ -26,12 +26,14 @@ bool Session::attempt(const std::string& place, const std::function<void()>& wor
 }
 
 void Session::attempt_scenes(const std::function<void(const config::Scene&)>& work) {
-    const int steps = int(config.methods.size()) * (config.warmup + config.repeat);
-    steps_total = int(config.scenes.size()) * steps;
-    for (std::size_t i = 0; i < config.scenes.size(); ++i) {
-        const config::Scene& scene = config.scenes[i];
-        steps_done = int(i) * steps;
-        if (!samples.complete({scene.name, kSceneRows, "", 0, 0}))
+    steps_total = 0;
+    for (const config::Scene& scene : config.scenes) steps_total += steps_of(scene);
+    int steps = 0;
+    for (const config::Scene& scene : config.scenes) {
+        steps_done = steps;
+        steps += steps_of(scene);
+        // What fails in a frame stays out of the later ones: the last says that all are complete.
+        if (!samples.complete({scene.name, kSceneRows, "", scene.frames() - 1, 0}))
             attempt(scene.name, [&] { work(scene); });
     }
 }

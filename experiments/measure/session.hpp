@@ -22,8 +22,8 @@ struct Registries {
     std::span<const shadows::MethodRow> methods;
 };
 
-/// The `method` of rows that describe a scene itself. They are written when all else of the scene
-/// is done, so their presence says so.
+/// The `method` of rows that describe a scene itself. They are written when all else of the scene,
+/// or of a frame of its path, is done, so their presence says so.
 inline constexpr const char* kSceneRows = "(scene)";
 
 struct Session {
@@ -45,8 +45,11 @@ struct Session {
     /// Runs `work`. An exception becomes a failure of the run, named by `place`, and false; the run
     /// goes on. Lost devices and unwritable results end it: those exceptions pass.
     bool attempt(const std::string& place, const std::function<void()>& work);
-    /// attempt() on every scene of the config that is not complete. A scene takes a step per method
-    /// and repetition.
+    /// A step per frame, method and repetition.
+    int steps_of(const config::Scene& scene) const {
+        return scene.frames() * int(config.methods.size()) * (config.warmup + config.repeat);
+    }
+    /// attempt() on every scene of the config that is not complete.
     void attempt_scenes(const std::function<void(const config::Scene&)>& work);
     /// Notes a failure of the run, one line; the run goes on.
     void fail(const std::string& message);

@@ -1,5 +1,6 @@
 // kind = "shadows". On each scene the methods take turns, repetition by repetition (A B C, A B C,
-// ...), so that a machine that slows down or speeds up on the way does so for all of them.
+// ...), so that a machine that slows down or speeds up on the way does so for all of them. On a
+// path they do so in every frame.
 #include <fmt/format.h>
 
 #include <bit>
@@ -55,64 +56,90 @@ class SceneRun {
 
     void run() {
         session_.show_step(scene_.name + ": loading");
-        const SceneInput input = load_scene(scene_);
-        const gbuffer::GBuffer gbuffer = gbuffer::render_gbuffer(
-            session_.device, input.mesh, input.camera, scene_.width, scene_.height);
-        points_ = &gbuffer.points;
-        mask_ = geometry_mask(gbuffer.points);
-        if (gbuffer.points.valid_count() == 0)
-            session_.progress.note(scene_.name + ": the camera sees no geometry");
-
-        if (session_.config.truth) {
-            session_.show_step(scene_.name + ": truth");
-            judgement_.emplace(session_, scene_.name, input, gbuffer.points);
+        input_ = load_scene(scene_);
+        const scenes::View still{input_.camera, input_.light};
+        const int steps = session_.steps_of(scene_) / scene_.frames();
+        for (int frame = 0; frame < scene_.frames(); ++frame) {
+            if (session_.samples.complete({scene_.name, kSceneRows, "", frame, 0})) {
+                session_.steps_done += steps;
+                continue;
+            }
+            see(frame, scene_.path ? scene_.path->at(frame, still) : still);
+            measure();
         }
-        prepare(input);
-        for (int i = 0; i < session_.config.warmup; ++i)
-            for (Contestant& contestant : contestants_) attempt(contestant, input, -1);
-        const Contestant& reference = contestants_[session_.config.reference];
-        if (reference.method) reference_ = reference.visible.words;
-        for (int i = 0; i < session_.config.repeat; ++i)
-            for (Contestant& contestant : contestants_) attempt(contestant, input, i);
-
-        if (session_.config.pictures) draw(input);
-        // A scene with a failure stays open, so that --resume tries it again.
-        for (const Contestant& contestant : contestants_)
-            if (!contestant.method) return;
-        structures::Samples facts{{"gbuffer_ms", gbuffer.milliseconds, "ms"},
-                                  {"points", double(gbuffer.points.valid_count())},
-                                  {"triangles", double(input.mesh.triangle_count())},
-                                  {"degenerate", double(input.report.degenerate)}};
-        if (judgement_) add(facts, judgement_->effort());
-        session_.samples.append({scene_.name, kSceneRows, "", 0, 0}, facts);
     }
 
   private:
+    /// "city", and of a path "city, frame 12".
+    std::string where() const {
+        return scene_.path ? fmt::format("{}, frame {}", scene_.name, frame_) : scene_.name;
+    }
     std::string place(const Contestant& contestant) const {
-        return scene_.name + ", " + contestant.config->label();
+        return where() + ", " + contestant.config->label();
     }
 
-    void prepare(const SceneInput& input) {
+    /// The frame's points, and the truth about them.
+    void see(int frame, const scenes::View& view) {
+        frame_ = frame;
+        judgement_.reset();
+        reference_.clear();
+        if (!gbuffer_ || view.camera != input_.camera)
+            gbuffer_ = gbuffer::render_gbuffer(session_.device, input_.mesh, view.camera,
+                                               scene_.width, scene_.height);
+        input_.camera = view.camera;
+        input_.light = view.light;
+        mask_ = geometry_mask(points());
+        if (points().valid_count() == 0)
+            session_.progress.note(where() + ": the camera sees no geometry");
+        if (!session_.config.truth) return;
+        session_.show_step(where() + ": truth");
+        judgement_.emplace(session_, where(), input_, points());
+    }
+
+    void measure() {
+        if (contestants_.empty()) prepare();
+        for (int i = 0; i < session_.config.warmup; ++i)
+            for (Contestant& contestant : contestants_) attempt(contestant, -1);
+        const Contestant& reference = contestants_[session_.config.reference];
+        if (reference.method) reference_ = reference.visible.words;
+        for (int i = 0; i < session_.config.repeat; ++i)
+            for (Contestant& contestant : contestants_) attempt(contestant, i);
+
+        if (session_.config.pictures && (frame_ == 0 || scene_.all_pictures)) draw();
+        // A frame with a failure stays open, so that --resume tries it again.
+        for (const Contestant& contestant : contestants_)
+            if (!contestant.method) return;
+        structures::Samples facts{{"gbuffer_ms", gbuffer_->milliseconds, "ms"},
+                                  {"points", double(points().valid_count())},
+                                  {"triangles", double(input_.mesh.triangle_count())},
+                                  {"degenerate", double(input_.report.degenerate)}};
+        if (judgement_) add(facts, judgement_->effort());
+        session_.samples.append({scene_.name, kSceneRows, "", frame_, 0}, facts);
+    }
+
+    const shadows::Points& points() const { return gbuffer_->points; }
+
+    void prepare() {
         for (const config::Method& method : session_.config.methods) {
             Contestant& contestant = contestants_.emplace_back(&method);
             const bool ready = session_.attempt(place(contestant), [&] {
                 contestant.method = config::find_row(session_.registries.methods, method.name)
                                         .create(session_.device, method.settings);
-                contestant.method->prepare(input.mesh);
+                contestant.method->prepare(input_.mesh);
             });
             if (!ready) contestant.method.reset();
         }
     }
 
     /// One repetition, or a warm-up if `repetition` is negative.
-    void attempt(Contestant& contestant, const SceneInput& input, int repetition) {
-        const Key key{scene_.name, contestant.config->name, contestant.config->variant, 0,
+    void attempt(Contestant& contestant, int repetition) {
+        const Key key{scene_.name, contestant.config->name, contestant.config->variant, frame_,
                       repetition};
-        session_.step(fmt::format("{}  {}  {}", scene_.name, contestant.config->label(),
+        session_.step(fmt::format("{}  {}  {}", where(), contestant.config->label(),
                                   repetition < 0 ? "warm-up" : fmt::format("#{}", repetition + 1)));
         if (!contestant.method || session_.samples.complete(key)) return;
         const bool done = session_.attempt(place(contestant), [&] {
-            structures::Samples samples = answer(contestant, input, *points_);
+            structures::Samples samples = answer(contestant, input_, points());
             if (repetition < 0) return;
             count(contestant, samples);
             session_.samples.append(key, samples);
@@ -127,7 +154,7 @@ class SceneRun {
             shadowed += std::popcount(~lit & mask_[w]);
             if (!reference_.empty()) differing += std::popcount((lit ^ reference_[w]) & mask_[w]);
         }
-        samples.push_back({"points", double(points_->valid_count())});
+        samples.push_back({"points", double(points().valid_count())});
         samples.push_back({"shadowed", shadowed});
         if (!reference_.empty()) samples.push_back({"differing_points", differing});
         if (!judgement_) return;
@@ -135,27 +162,29 @@ class SceneRun {
         add(samples, judgement_->score(contestant.visible));
     }
 
-    void draw(const SceneInput& input) {
+    void draw() {
         for (Contestant& contestant : contestants_) {
             if (!contestant.method) continue;
             session_.attempt(place(contestant), [&] {
-                Pictures pictures{session_.folder, scene_.name, contestant.config->name,
-                                  contestant.config->variant};
-                pictures.shaded(*points_, contestant.visible, input.light);
-                pictures.visibility(*points_, contestant.visible);
+                Pictures pictures{session_.folder, frame_ == 0 ? scene_.name : where(),
+                                  contestant.config->name, contestant.config->variant};
+                pictures.shaded(points(), contestant.visible, input_.light);
+                pictures.visibility(points(), contestant.visible);
                 if (judgement_)
-                    pictures.errors(*points_, contestant.visible, input.light,
+                    pictures.errors(points(), contestant.visible, input_.light,
                                     judgement_->mask(contestant.visible));
                 else if (!reference_.empty())
-                    pictures.difference(*points_, contestant.visible, reference_);
-                pictures.heat(*points_, contestant.method->heat());
+                    pictures.difference(points(), contestant.visible, reference_);
+                pictures.heat(points(), contestant.method->heat());
             });
         }
     }
 
     Session& session_;
     const config::Scene& scene_;
-    const shadows::Points* points_ = nullptr;
+    SceneInput input_;  ///< camera and light: of the frame
+    int frame_ = 0;
+    std::optional<gbuffer::GBuffer> gbuffer_;
     std::vector<std::uint32_t> mask_, reference_;
     std::vector<Contestant> contestants_;
     std::optional<Judgement> judgement_;  ///< none if the config wants no truth

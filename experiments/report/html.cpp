@@ -52,6 +52,7 @@ svg .label { font-size: 11px; fill: var(--soft); paint-order: stroke; stroke: va
 svg .leader { stroke: var(--soft); stroke-width: .75; }
 svg .front { fill: none; stroke: var(--mark); stroke-width: 1.5; opacity: .6; }
 svg .mark { fill: var(--c); stroke: var(--c); stroke-width: 1.75; } svg .open { fill: var(--card); }
+svg .curve { fill: none; stroke: var(--c); stroke-width: 1.75; }
 svg .span { stroke: var(--c); stroke-width: 1.5; opacity: .5; }
 svg:root { background: var(--card); } svg.pareto:root { min-width: 0; }
 .s0 { --c: #2f7d5b; } .s1 { --c: #0072b2; } .s2 { --c: #d55e00; } .s3 { --c: #9a4f8c; }

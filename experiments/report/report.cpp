@@ -10,6 +10,7 @@
 #include "experiments/measure/session.hpp"
 #include "experiments/measure/summary.hpp"
 #include "experiments/report/charts.hpp"
+#include "experiments/report/frames.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/pareto.hpp"
 #include "experiments/report/stability.hpp"
@@ -205,8 +206,17 @@ std::string failures(const nlohmann::json& manifest) {
     return html;
 }
 
+/// Run time along the scene's path, if it has one.
+std::string curves(std::span<const measure::Row> rows, const std::string& scene) {
+    const std::vector<Curve> found = find_curves(rows, scene);
+    if (found.empty()) return {};
+    return "<div class=\"scroll\">\n" + frame_chart(scene + ": run time along the path", found) +
+           "</div>\n";
+}
+
 std::string scene_section(const std::filesystem::path& run, const nlohmann::json& manifest,
-                          const SceneResults& scene, std::span<const Tradeoff> tradeoffs) {
+                          const SceneResults& scene, std::span<const measure::Row> rows,
+                          std::span<const Tradeoff> tradeoffs) {
     std::string html = "<section>\n<h2>" + escape(scene.name) + "</h2>\n";
     if (scene.facts) {
         std::vector<std::string> parts;
@@ -217,7 +227,8 @@ std::string scene_section(const std::filesystem::path& run, const nlohmann::json
                             escape(fmt::format("{}", fmt::join(parts, " · "))));
     }
     if (!scene.methods.empty())
-        html += table(scene.methods) + pareto(run, scene.name, tradeoffs) + charts(scene.methods);
+        html += table(scene.methods) + curves(rows, scene.name) +
+                pareto(run, scene.name, tradeoffs) + charts(scene.methods);
     return html + pictures(run, manifest, scene.name) + "</section>\n";
 }
 
@@ -226,7 +237,7 @@ nlohmann::json read_manifest(const std::filesystem::path& run) {
 }
 
 void write(const std::filesystem::path& run, const nlohmann::json& manifest,
-           std::span<const ResultSummary> results) {
+           std::span<const measure::Row> rows, std::span<const ResultSummary> results) {
     const std::vector<SceneResults> scenes = by_scene(results);
     std::vector<Tradeoff> tradeoffs;  // of all scenes
     std::string html;
@@ -254,7 +265,7 @@ void write(const std::filesystem::path& run, const nlohmann::json& manifest,
         else
             for (const SceneResults& scene : scenes) {
                 const std::vector<Tradeoff> own = find_tradeoffs(scene.methods);
-                html += scene_section(run, manifest, scene, own);
+                html += scene_section(run, manifest, scene, rows, own);
                 tradeoffs.insert(tradeoffs.end(), own.begin(), own.end());
             }
         html += provenance(manifest) + "</body>\n</html>\n";
@@ -271,11 +282,13 @@ void write(const std::filesystem::path& run, const nlohmann::json& manifest,
 void write_report(const std::filesystem::path& run) {
     // The manifest first: without it the folder is none of a run.
     const nlohmann::json manifest = read_manifest(run);
-    write(run, manifest, measure::summarise(measure::read_samples(run / "samples.csv")));
+    const std::vector<measure::Row> rows = measure::read_samples(run / "samples.csv");
+    write(run, manifest, rows, measure::summarise(rows));
 }
 
-void write_report(const std::filesystem::path& run, std::span<const ResultSummary> results) {
-    write(run, read_manifest(run), results);
+void write_report(const std::filesystem::path& run, std::span<const measure::Row> rows,
+                  std::span<const ResultSummary> results) {
+    write(run, read_manifest(run), rows, results);
 }
 
 }  // namespace experiments::report

@@ -12,8 +12,8 @@ namespace experiments::report {
 /// answers were judged, pareto.csv and a plot of run time against error in images/. Throws
 /// std::runtime_error naming the file that is missing or unreadable.
 void write_report(const std::filesystem::path& run);
-/// The same with what samples.csv was summarised to.
-void write_report(const std::filesystem::path& run,
+/// The same with the rows of samples.csv and what they were summarised to.
+void write_report(const std::filesystem::path& run, std::span<const measure::Row> rows,
                   std::span<const measure::ResultSummary> results);
 
 }  // namespace experiments::report

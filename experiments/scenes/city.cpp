@@ -143,7 +143,7 @@ GeneratedScene generate(const Settings& settings) {
             }
     }
     const double edge = (ring - 0.5) * pitch + settings.real("street");
-    add_quad(mesh, {{{-edge, 0, -edge}, {-edge, 0, edge}, {edge, 0, edge}, {edge, 0, -edge}}});
+    add_ground(mesh, edge);
 
     // Near the middle the view is the same however large the city; the lamp hangs high above it.
     const auto near = static_cast<float>(std::min(edge, 4 * pitch));

@@ -12,5 +12,9 @@ GeneratorRow spheres();
 GeneratorRow city();
 GeneratorRow pipes();
 GeneratorRow hairball();
+GeneratorRow bird_cage();
+GeneratorRow tentacles();
+GeneratorRow meshes();
+GeneratorRow crowd();
 
 }  // namespace experiments::scenes

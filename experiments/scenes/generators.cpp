@@ -8,7 +8,8 @@
 namespace experiments::scenes {
 
 std::span<const GeneratorRow> generators() {
-    static const std::array<GeneratorRow, 4> rows = {spheres(), city(), pipes(), hairball()};
+    static const std::array<GeneratorRow, 8> rows = {spheres(),   city(),      pipes(),  hairball(),
+                                                     bird_cage(), tentacles(), meshes(), crowd()};
     return rows;
 }
 

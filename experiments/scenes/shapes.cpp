@@ -1,4 +1,4 @@
-// Random numbers, circles, boxes, spheres and tubes.
+// Random numbers, circles, boxes, spheres, tubes, tori and copies.
 #include "experiments/scenes/shapes.hpp"
 
 #include <cmath>
@@ -110,7 +110,8 @@ void add_sphere(TriangleMesh& mesh, glm::dvec3 center, double radius, std::size_
         join_rings(mesh, bottom + 1 + k * around, bottom + 1 + (k + 1) * around, around);
 }
 
-void add_tube(TriangleMesh& mesh, std::span<const Ring> rings, std::size_t sides) {
+void add_tube(TriangleMesh& mesh, std::span<const Ring> rings, std::size_t sides,
+              const Relief& relief) {
     const auto around = static_cast<std::uint32_t>(sides);
     std::vector<glm::dvec2> circle(around);
     for (std::uint32_t i = 0; i < around; ++i) circle[i] = unit_circle(double(i) / around);
@@ -120,29 +121,70 @@ void add_tube(TriangleMesh& mesh, std::span<const Ring> rings, std::size_t sides
     glm::dvec3 u(0);
     u[least] = 1;
 
+    const bool first_tip = rings.front().radius == 0, last_tip = rings.back().radius == 0;
     const auto begin = static_cast<std::uint32_t>(mesh.positions.size());
-    const bool tip = rings.back().radius == 0;
-    const std::size_t full = rings.size() - tip;
-    for (std::size_t r = 0; r < full; ++r) {
+    std::uint32_t full = 0;
+    for (std::size_t r = first_tip; r < rings.size() - last_tip; ++r, ++full) {
         const Ring& ring = rings[r];
         u = glm::normalize(u - glm::dot(u, ring.axis) * ring.axis);
         const glm::dvec3 v = glm::cross(ring.axis, u);
-        for (const glm::dvec2 c : circle)
-            add_vertex(mesh, ring.center + ring.radius * (c.x * u + c.y * v));
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const double radius = relief ? ring.radius * relief(r, i) : ring.radius;
+            add_vertex(mesh, ring.center + radius * (circle[i].x * u + circle[i].y * v));
+        }
     }
     for (std::uint32_t r = 0; r + 1 < full; ++r)
         join_rings(mesh, begin + r * around, begin + (r + 1) * around, around);
-    const auto last = static_cast<std::uint32_t>(begin + (full - 1) * around);
-    for (std::uint32_t i = 2; i < around; ++i)
-        mesh.triangles.emplace_back(begin, begin + i, begin + i - 1);
-    if (!tip) {
+
+    const std::uint32_t last = begin + (full - 1) * around;
+    if (first_tip) {
+        const std::uint32_t point = add_vertex(mesh, rings.front().center);
+        for (std::uint32_t i = 0; i < around; ++i)
+            mesh.triangles.emplace_back(begin + (i + 1) % around, begin + i, point);
+    } else {
+        for (std::uint32_t i = 2; i < around; ++i)
+            mesh.triangles.emplace_back(begin, begin + i, begin + i - 1);
+    }
+    if (last_tip) {
+        const std::uint32_t point = add_vertex(mesh, rings.back().center);
+        for (std::uint32_t i = 0; i < around; ++i)
+            mesh.triangles.emplace_back(last + i, last + (i + 1) % around, point);
+    } else {
         for (std::uint32_t i = 2; i < around; ++i)
             mesh.triangles.emplace_back(last, last + i - 1, last + i);
-        return;
     }
-    const std::uint32_t point = add_vertex(mesh, rings.back().center);
-    for (std::uint32_t i = 0; i < around; ++i)
-        mesh.triangles.emplace_back(last + i, last + (i + 1) % around, point);
+}
+
+void add_torus(TriangleMesh& mesh, glm::dvec3 center, double radius, double thickness,
+               std::size_t segments, std::size_t sides) {
+    const auto along = static_cast<std::uint32_t>(segments);
+    const auto around = static_cast<std::uint32_t>(sides);
+    const auto begin = static_cast<std::uint32_t>(mesh.positions.size());
+    for (std::uint32_t k = 0; k < along; ++k) {
+        const glm::dvec2 out = unit_circle(double(k) / along);
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const glm::dvec2 c = thickness * unit_circle(double(i) / around);
+            const double distance = radius + c.x;
+            add_vertex(mesh, center + glm::dvec3(distance * out.x, c.y, -distance * out.y));
+        }
+    }
+    for (std::uint32_t k = 0; k < along; ++k)
+        join_rings(mesh, begin + (k + 1) % along * around, begin + k * around, around);
+}
+
+void add_copy(TriangleMesh& mesh, const TriangleMesh& model, glm::dvec3 at, double turns,
+              double scale) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const glm::dvec2 c = scale * unit_circle(turns);
+    for (const glm::dvec3 p : model.positions)
+        add_vertex(mesh,
+                   at + glm::dvec3(c.x * p.x + c.y * p.z, scale * p.y, c.x * p.z - c.y * p.x));
+    for (const glm::uvec3 t : model.triangles) mesh.triangles.push_back(t + first);
+}
+
+void add_ground(TriangleMesh& mesh, double half_side) {
+    const double e = half_side;
+    add_quad(mesh, {{{-e, 0, -e}, {-e, 0, e}, {e, 0, e}, {e, 0, -e}}});
 }
 
 }  // namespace experiments::scenes

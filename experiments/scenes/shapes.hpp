@@ -1,9 +1,10 @@
-// Building blocks of the generators: random numbers, points on a circle, boxes, spheres and tubes,
-// reproducible to the last bit.
+// Building blocks of the generators: random numbers, points on a circle, boxes, spheres, tubes,
+// tori and copies, reproducible to the last bit.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <span>
 
@@ -50,10 +51,27 @@ struct Ring {
     double radius;
 };
 
+/// Factor of a tube's radius at a side of a ring.
+using Relief = std::function<double(std::size_t ring, std::size_t side)>;
+
 /// A closed tube of `sides` sides through two rings or more, its ends capped flat: 2 * sides
-/// triangles per stretch and sides - 2 per cap. A last ring of radius 0 is a tip: `sides` triangles
-/// in place of the stretch and the cap. The rings do not twist against each other.
+/// triangles per stretch and sides - 2 per cap. A first or last ring of radius 0 is a tip: `sides`
+/// triangles in place of the stretch and the cap; between two tips there is a ring at least. The
+/// rings do not twist against each other. Without `relief` they are round.
 void add_tube(structures::geometry::TriangleMesh& mesh, std::span<const Ring> rings,
-              std::size_t sides);
+              std::size_t sides, const Relief& relief = {});
+
+/// A torus around the vertical through `center`: a circle of this radius, `thickness` the radius of
+/// what runs along it; 2 * segments * sides triangles.
+void add_torus(structures::geometry::TriangleMesh& mesh, glm::dvec3 center, double radius,
+               double thickness, std::size_t segments, std::size_t sides);
+
+/// A copy of `model`: scaled, turned about the vertical axis, then moved from the origin to `at`.
+void add_copy(structures::geometry::TriangleMesh& mesh,
+              const structures::geometry::TriangleMesh& model, glm::dvec3 at, double turns,
+              double scale = 1);
+
+/// A horizontal square of two triangles at height 0, facing up.
+void add_ground(structures::geometry::TriangleMesh& mesh, double half_side);
 
 }  // namespace experiments::scenes

@@ -84,8 +84,7 @@ GeneratedScene generate(const Settings& settings) {
         add_sphere(scene.mesh, cell + shift, radius, tessellation);
     }
     const double edge = half + 1;
-    add_quad(scene.mesh,
-             {{{-edge, 0, -edge}, {-edge, 0, edge}, {edge, 0, edge}, {edge, 0, -edge}}});
+    add_ground(scene.mesh, edge);
 
     const auto size = static_cast<float>(edge);
     scene.camera = {{0.75f * size, 0.9f * size, 1.5f * size}, {0, 0, 0.1f * size}, {0, 1, 0}, 45};

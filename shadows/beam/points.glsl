@@ -11,6 +11,7 @@ const uint kNoPrimitive = 0xffffffffu;
 // gl_WorkGroupSize, of which compilers take the default.
 layout(constant_id = 9) const uint kSlots = 32;
 const uint kLanes = kTilePoints / kSlots;
+#include "taskpool/primitives/lanes.glsl"
 
 float norm1(vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
 
@@ -32,28 +33,8 @@ uint take_lane(inout uvec4 votes) {
     return 32u + lane;
 }
 
-// Loops over hops of 1, 2, 4 ... run over the logarithm: Mesa before 23 unrolls no loop whose variable is
-// multiplied or divided, and nobody would count its iterations.
-
-// Reductions by exchange are cheaper than the driver's own on narrow subgroups.
-float reduce_min(float value) {
-    if (kLanes > 16) return subgroupMin(value);
-    [[unroll]] for (uint k = 0; k < 4; ++k) {
-        if (1u << k < kLanes) value = min(value, subgroupShuffleXor(value, 1u << k));
-    }
-    return value;
-}
-// Sum of the values of this lane and of those below; by exchange as well.
-uint sum_to_here(uint value) {
-    [[unroll]] for (uint k = 0; k < 7; ++k) {
-        const uint apart = 1u << k;
-        if (apart < kLanes) {
-            const uint other = subgroupShuffle(value, lane() - apart);
-            value += lane() < apart ? 0 : other;
-        }
-    }
-    return value;
-}
+// Wide subgroups have reductions of their own.
+float reduce_min(float value) { return kLanes > 16 ? subgroupMin(value) : lane_min(value); }
 float reduce_max(float value) { return -reduce_min(-value); }
 vec2 reduce_min(vec2 v) { return vec2(reduce_min(v.x), reduce_min(v.y)); }
 vec2 reduce_max(vec2 v) { return vec2(reduce_max(v.x), reduce_max(v.y)); }

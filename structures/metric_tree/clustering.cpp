@@ -115,16 +115,29 @@ class Progress {
 
 }  // namespace
 
-Clustering cluster(const TriangleMesh& mesh, const ClusterConfig& config,
-                   const std::function<void(double)>& progress) {
+void check(const ClusterConfig& config) {
     if (config.max_triangles < 1 || config.max_triangles > 64)
         throw std::invalid_argument(fmt::format(
             "clustering: max_triangles is {}; it has to be from 1 to 64", config.max_triangles));
+}
+
+void check(const TriangleMesh& mesh) {
     if (mesh.triangle_count() >= kMaxTriangles)
         throw std::invalid_argument(
             fmt::format("clustering: the mesh has {} triangles; fewer than {} are possible",
                         mesh.triangle_count(), kMaxTriangles));
+}
 
+std::uint32_t count_capsules(const std::vector<Cluster>& clusters) {
+    return static_cast<std::uint32_t>(
+        std::count_if(clusters.begin(), clusters.end(),
+                      [](const Cluster& cluster) { return cluster.a != cluster.b; }));
+}
+
+Clustering cluster(const TriangleMesh& mesh, const ClusterConfig& config,
+                   const std::function<void(double)>& progress) {
+    check(config);
+    check(mesh);
     Clustering result;
     result.order = sorted_triangles(mesh);
     const std::size_t chunk_count = (result.order.size() + kChunk - 1) / kChunk;
@@ -150,9 +163,7 @@ Clustering cluster(const TriangleMesh& mesh, const ClusterConfig& config,
         result.clusters.insert(result.clusters.end(), chunk.begin(), chunk.end());
         chunk = {};
     }
-    result.capsule_count = static_cast<std::uint32_t>(
-        std::count_if(result.clusters.begin(), result.clusters.end(),
-                      [](const Cluster& cluster) { return cluster.a != cluster.b; }));
+    result.capsule_count = count_capsules(result.clusters);
     return result;
 }
 

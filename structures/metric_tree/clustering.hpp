@@ -31,8 +31,14 @@ struct Clustering {
     std::uint32_t capsule_count = 0;
 };
 
+/// Throw std::invalid_argument if max_triangles is out of range, or for 2^27 or more triangles.
+void check(const ClusterConfig& config);
+void check(const geometry::TriangleMesh& mesh);
+
+std::uint32_t count_capsules(const std::vector<Cluster>& clusters);
+
 /// `progress` gets the share done, from 0 to 1, from one thread at a time; it may be empty. Throws
-/// std::invalid_argument if max_triangles is out of range, or for 2^27 or more triangles.
+/// what check() throws.
 Clustering cluster(const geometry::TriangleMesh& mesh, const ClusterConfig& config,
                    const std::function<void(double)>& progress = {});
 

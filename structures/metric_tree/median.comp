@@ -135,22 +135,7 @@ void reach_depth(uint depth) {
     if (subgroupElect()) atomicMax(pool.client.header.header.depth_max, depth);
 }
 
-// Loops over hops of 1, 2, 4 ... lanes run over the logarithm: Mesa before 23 unrolls no loop whose
-// variable is multiplied or divided, and each iteration would have to be told to pool_spend().
-const uint kLaneBits = 7;  // kLanes <= 128
-
-/// Sum of the lanes' values up to this one; by shuffles, as lavapipe makes loops of scans.
-uint sum_to_here(uint mine) {
-    [[unroll]] for (uint k = 0; k < kLaneBits; ++k) {
-        const uint apart = 1u << k;
-        if (apart < kLanes) {
-            const uint before = subgroupShuffle(mine, gl_SubgroupInvocationID - apart);
-            mine += gl_SubgroupInvocationID < apart ? 0 : before;
-        }
-    }
-    return mine;
-}
-
+#include "taskpool/primitives/lanes.glsl"
 #include "structures/metric_tree/median_partition.glsl"
 #include "structures/metric_tree/median_choice.glsl"
 #include "structures/metric_tree/median_leaf.glsl"

@@ -56,8 +56,8 @@ pool::ClientSpec client_spec(const gpu::Device& device, BuilderKind builder,
         subtree += 5 * (leaf + 1) + choice(count, 1) + turn;
     const std::uint32_t large =
         kPivotSample + choice(kDeltaSample, lanes) + 8 * kChunkElements / lanes;
-    // Scans in transitions: enough for 16384 chunks by 8 lanes.
-    spec.chunk_iterations = std::max(subtree, large) + 4096;
+    // Scans in transitions: enough for 8192 chunks by 8 lanes.
+    spec.chunk_iterations = std::max(subtree, large) + 2048;
     return spec;
 }
 

@@ -97,14 +97,14 @@ void choose(inout Task task) {
     }
     float merit = merit_of(row, samples);
     uint lane = gl_SubgroupInvocationID;  // of equal ones, the lowest
-    [[unroll]] for (uint k = 0; k < kLaneBits; ++k)
-        if (1u << k < kLanes) {
-            const float other = subgroupShuffleXor(merit, 1u << k);
-            const uint from = subgroupShuffleXor(lane, 1u << k);
-            const bool take = other > merit || (other == merit && from < lane);
-            merit = take ? other : merit;
-            lane = take ? from : lane;
-        }
+    [[unroll]] for (uint k = 0; k < kLaneBits; ++k) {
+        if (1u << k >= kLanes) continue;
+        const float other = subgroupShuffleXor(merit, 1u << k);
+        const uint from = subgroupShuffleXor(lane, 1u << k);
+        const bool take = other > merit || (other == merit && from < lane);
+        merit = take ? other : merit;
+        lane = take ? from : lane;
+    }
     subgroup_sync();
     lane = subgroupShuffle(lane, 0);  // also if something is not a number
     task.pivot = subgroupShuffle(place, lane);
@@ -120,13 +120,13 @@ void choose(inout Task task) {
     }
     subgroup_sync();
     Choice best = best_delta(0, sampled, gl_SubgroupInvocationID, kLanes);
-    [[unroll]] for (uint k = 0; k < kLaneBits; ++k)
-        if (1u << k < kLanes) {
-            const Choice other = Choice(subgroupShuffleXor(best.cost, 1u << k),
-                                        subgroupShuffleXor(best.delta, 1u << k));
-            if (other.cost < best.cost || (other.cost == best.cost && other.delta < best.delta))
-                best = other;
-        }
+    [[unroll]] for (uint k = 0; k < kLaneBits; ++k) {
+        if (1u << k >= kLanes) continue;
+        const Choice other = Choice(subgroupShuffleXor(best.cost, 1u << k),
+                                    subgroupShuffleXor(best.delta, 1u << k));
+        if (other.cost < best.cost || (other.cost == best.cost && other.delta < best.delta))
+            best = other;
+    }
     subgroup_sync();
     task.delta = listed ? -1.0 : subgroupShuffle(best.delta, 0);
     if (is_large(range)) clear_tally(range);

@@ -9,19 +9,6 @@ const uint kNearCount = 0, kFarCount = 1, kBoundsWord = 2;
 
 uint scratch_word(uint begin) { return begin / kChunkElements * kScratchWords; }
 
-float lane_min(float v) {
-    [[unroll]] for (uint k = 0; k < kLaneBits; ++k)
-        if (1u << k < kLanes) v = min(v, subgroupShuffleXor(v, 1u << k));
-    return v;
-}
-float lane_max(float v) { return -lane_min(-v); }
-uint lane_max(uint v) {
-    [[unroll]] for (uint k = 0; k < kLaneBits; ++k)
-        if (1u << k < kLanes) v = max(v, subgroupShuffleXor(v, 1u << k));
-    return v;
-}
-uint lane_sum(uint v) { return subgroupShuffle(sum_to_here(v), kLanes - 1); }
-
 // ---- The elements of all clusters -----------------------------------------------------------------
 
 /// Counts the elements among the clusters [begin, end), or writes their numbers to where the scanned

@@ -197,33 +197,24 @@ double largest_coordinate(const dvec3& v) {
 /// is none narrower than 180 degrees.
 void fit_cone(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
               const dvec3& thinnest, Cluster& cluster) {
-    dvec3 sum(0);
-    double error = 0;
-    for (const std::uint32_t triangle : triangles) {
-        const dvec3 normal = normal_of(mesh, triangle);
-        const double length = glm::length(normal);
-        sum += normal / length;
-        // What rounding turns the normal by, at most: much for a sliver.
-        const dvec3 from = mesh.corner(triangle, 0);
-        error =
-            std::max(error, 16 * 0x1p-53 * glm::distance(from, dvec3(mesh.corner(triangle, 1))) *
-                                glm::distance(from, dvec3(mesh.corner(triangle, 2))) / length);
-    }
     cluster.axis = thinnest;
     cluster.cone_cosine = -1;
+    dvec3 sum(0);
+    for (const std::uint32_t triangle : triangles) sum += glm::normalize(normal_of(mesh, triangle));
     const double length = glm::length(sum);
     if (!(length > 1e-6 * static_cast<double>(triangles.size()))) return;
     const glm::vec3 axis = sum / length;
-    const double axis_length = glm::length(dvec3(axis));
     double cosine = 1;
     for (const std::uint32_t triangle : triangles) {
-        const dvec3 normal = normal_of(mesh, triangle);
+        const dvec3 from = mesh.corner(triangle, 0), normal = normal_of(mesh, triangle);
+        // What rounding turns the normal by, at most, much for a sliver, and its cosine by no more.
+        const double error = 16 * 0x1p-53 * glm::distance(from, dvec3(mesh.corner(triangle, 1))) *
+                             glm::distance(from, dvec3(mesh.corner(triangle, 2)));
         cosine =
-            std::min(cosine, glm::dot(normal, dvec3(axis)) / (glm::length(normal) * axis_length));
+            std::min(cosine, (glm::dot(normal, dvec3(axis)) / glm::length(dvec3(axis)) - error) /
+                                 glm::length(normal));
     }
-    // The arc cosine of nearly 1 is off by 1.5e-8 for a last bit of its argument.
-    const double angle = std::acos(std::max(cosine, -1.0)) + error + 1e-7;
-    const float rounded = rounded_down(std::cos(std::min(angle, 3.0)));
+    const float rounded = rounded_down(cosine);
     if (!(rounded > 0)) return;
     cluster.axis = axis;
     cluster.cone_cosine = rounded;

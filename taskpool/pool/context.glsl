@@ -121,6 +121,7 @@ void flush_counters() {
     if (pool_counters.name != 0) atomicAdd(pool.state.state.name, pool_counters.name)
     add_counter(stalled);
     add_counter(blocked);
+    add_counter(cut);
     add_counter(progress);
     add_counter(chunks);
     add_counter(claims);

@@ -169,6 +169,12 @@ bool Pool::advance() {
     state_.read(&status_.state, sizeof(PoolState));
     PoolState& state = status_.state;
     ++status_.launches;
+    if (state.cut > 0)
+        throw gpu::Error(
+            VK_ERROR_UNKNOWN,
+            fmt::format("the driver cut the loops of a task pool's kernel, which took more than {} "
+                        "iterations: the client tells pool_spend() of too few",
+                        device_->info().loop_limit));
     if (state.live == 0) return false;
 
     const bool idle = state.chunks == before.chunks && state.spawned == before.spawned &&

@@ -94,7 +94,8 @@ class Pool {
     }
 
     /// To be called when the launch is done: reads its counters, doubles the slots if a spawn found
-    /// none. True if tasks are left. Throws gpu::Error if launches stop making progress.
+    /// none. True if tasks are left. Throws gpu::Error if launches stop making progress, or if the
+    /// driver cut their loops: the client counts too few iterations.
     bool advance();
 
     const PoolStatus& status() const { return status_; }

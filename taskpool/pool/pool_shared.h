@@ -53,6 +53,7 @@ struct PoolState {
     uint high_water;     // slots [0, high_water) have been in use
     uint stalled;        // subgroups that left a launch with a spawn that found no slot
     uint blocked;        // subgroups that left with a task that waits for a larger output buffer
+    uint cut;            // subgroups whose loops the driver cut: results are wrong
     uint progress;       // client's measure, see pool_progress()
     uint trace_count;    // trace records wanted; beyond the capacity they are only counted
     uint chunks, claims, failed_claims, polls;
@@ -67,7 +68,7 @@ struct TraceRecord {
 
 #ifdef __cplusplus
 static_assert(sizeof(TaskInfo) == 40);
-static_assert(sizeof(PoolState) == 14 * 4 + kPhaseCounters * 4);
+static_assert(sizeof(PoolState) == 15 * 4 + kPhaseCounters * 4);
 static_assert(sizeof(TraceRecord) == 24);
 
 // Push constants of every pool kernel; the client's own struct Client follows.

@@ -163,9 +163,18 @@ bool spawn_next_child(inout TaskInfo info, inout Task task) {
     return true;
 }
 
+/// Whether the driver has cut a loop: each one ends after its first turn from then on. This one takes
+/// two turns, a number that no compiler knows.
+bool loops_are_cut() {
+    const uint turns = 2 + pool.capacity % 2;
+    uint turn = 0;
+    while (turn < turns) ++turn;
+    return turn < turns;
+}
+
 void main() {
     pool_began = pool_clock();
-    pool_counters = PoolState(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, uint[kPhaseCounters](
+    pool_counters = PoolState(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, uint[kPhaseCounters](
         0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0));
     // Subgroups begin their search apart, and each launch where the last one came to: a budget may be
     // too small for a look at all slots.
@@ -240,6 +249,7 @@ void main() {
         stack_push(TaskInfo(kStateClaim, 0, 0, pool_chunk_end, pool_chunk, pool_slot, 0, pool_claimed,
                             0, kNoSlot), task);
     flush_live(0);
+    pool_counters.cut = loops_are_cut() ? 1 : 0;
     flush_counters();
     if (subgroupElect()) PoolUints(pool.stacks).at[gl_WorkGroupID.x] = pool_held;
 }

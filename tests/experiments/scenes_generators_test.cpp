@@ -1,8 +1,10 @@
 // Generated scenes: reproducible to the bit, of the size asked for, sound.
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <map>
 
+#include "experiments/scenes/creatures.hpp"
 #include "experiments/scenes/generators.hpp"
 #include "experiments/scenes/shapes.hpp"
 #include "tests/experiments/scenes_support.hpp"
@@ -37,6 +39,19 @@ std::uint64_t hash(const TriangleMesh& mesh) {
     for (const glm::uvec3 t : mesh.triangles)
         for (int k = 0; k < 3; ++k) mix(t[k]);
     return result;
+}
+
+/// Edges that two triangles do not run along in opposite directions.
+std::size_t open_edges(const TriangleMesh& mesh) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
+    for (const glm::uvec3 t : mesh.triangles)
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+            // A triangle of the same direction on the same edge would not cancel.
+            balance[std::minmax(a, b)] += a < b ? 1 : -1;
+        }
+    return static_cast<std::size_t>(
+        std::count_if(balance.begin(), balance.end(), [](const auto& e) { return e.second != 0; }));
 }
 
 class EveryGenerator : public testing::TestWithParam<GeneratorRow> {};
@@ -75,12 +90,20 @@ TEST_P(EveryGenerator, RepeatsItselfAndHeedsTheSeed) {
 }
 
 TEST_P(EveryGenerator, IsTheSameOnEveryPlatform) {
-    const std::map<std::string_view, std::uint64_t> expected = {{"spheres", 7100313967746362817u},
-                                                                {"city", 12292383264220993170u},
-                                                                {"pipes", 14124933551594691095u},
-                                                                {"hairball", 504041802385214038u}};
+    const std::map<std::string_view, std::uint64_t> expected = {
+        {"spheres", 7100313967746362817u},   {"city", 12292383264220993170u},
+        {"pipes", 14124933551594691095u},    {"hairball", 504041802385214038u},
+        {"bird_cage", 5287992166475818859u}, {"tentacles", 13780364351303062737u},
+        {"meshes", 470310788235511760u},     {"crowd", 9217778780671443748u}};
     const GeneratedScene scene = generate(GetParam(), {{"triangles", std::int64_t{20000}}});
     EXPECT_EQ(hash(scene.mesh), expected.at(GetParam().name));
+}
+
+TEST_P(EveryGenerator, IsMadeOfClosedSurfacesOnOpenGround) {
+    if (GetParam().name == "city") return;  // its boxes have no bottom
+    const TriangleMesh mesh = generate(GetParam(), {{"triangles", std::int64_t{50000}}}).mesh;
+    const bool ground = GetParam().name != "pipes" && GetParam().name != "hairball";
+    EXPECT_EQ(open_edges(mesh), ground ? 4u : 0u);
 }
 
 TEST_P(EveryGenerator, HasAViewOfItself) {
@@ -149,6 +172,99 @@ TEST(Hairball, IsSoundAtTheExtremesOfItsParameters) {
                                     .mesh)
                               .degenerate,
                           0u);
+}
+
+/// Sound, and of the size asked for to within a row of triangles.
+void expect_sound(std::string_view name, Given given, std::int64_t triangles) {
+    given["triangles"] = triangles;
+    const GeneratedScene scene = generate(row_named(name), given);
+    EXPECT_EQ(count(scene.mesh).degenerate, 0u);
+    EXPECT_GE(scene.mesh.triangle_count(), std::size_t(triangles));
+    EXPECT_LT(scene.mesh.triangle_count(), std::size_t(triangles) + 2000);
+    EXPECT_EQ(open_edges(scene.mesh), 4u);
+    for (const glm::vec3 p : scene.mesh.positions)
+        for (int k = 0; k < 3; ++k) ASSERT_TRUE(std::isfinite(p[k]));
+}
+
+TEST(BirdCage, IsSoundAtTheExtremesOfItsParameters) {
+    for (const std::int64_t triangles : {1000, 60000})
+        for (const std::int64_t bars : {3, 2000})
+            for (const std::int64_t hoops : {0, 200})
+                for (const std::int64_t birds : {1, 60})
+                    expect_sound("bird_cage", {{"bars", bars}, {"hoops", hoops}, {"birds", birds}},
+                                 triangles);
+}
+
+TEST(Tentacles, AreSoundAtTheExtremesOfTheirParametersAndWave) {
+    for (const std::int64_t segments : {4, 256})
+        for (const std::int64_t sides : {3, 32})
+            for (const double wave : {0.0, 1.0}) {
+                const GeneratedScene scene =
+                    generate(row_named("tentacles"),
+                             {{"segments", segments}, {"sides", sides}, {"wave", wave}});
+                EXPECT_EQ(count(scene.mesh).degenerate, 0u);
+            }
+    const auto at = [](double phase) {
+        return hash(generate(row_named("tentacles"), {{"phase", phase}}).mesh);
+    };
+    EXPECT_NE(at(0), at(0.25));
+    EXPECT_EQ(at(0.25), at(1.25));
+}
+
+TEST(Meshes, AreSoundAtTheExtremesOfTheirParameters) {
+    for (const std::int64_t triangles : {1000, 60000})
+        for (const std::int64_t rows : {1, 100})
+            for (const std::int64_t columns : {1, 100})
+                for (const std::int64_t bars : {0, 5000})
+                    expect_sound("meshes", {{"rows", rows}, {"columns", columns}, {"bars", bars}},
+                                 triangles);
+}
+
+TEST(Crowd, IsSoundAtTheExtremesOfItsParameters) {
+    for (const std::int64_t triangles : {1000, 200000})
+        for (const std::int64_t each : {250, 10000000})
+            for (const std::int64_t models : {1, 64})
+                for (const double spacing : {1.0, 20.0})
+                    expect_sound(
+                        "crowd",
+                        {{"model_triangles", each}, {"models", models}, {"spacing", spacing}},
+                        triangles);
+}
+
+TEST(Crowd, TurnsItsModelsRigidly) {
+    // One model: all copies have the same distances between the corners of a triangle.
+    const TriangleMesh mesh = generate(row_named("crowd"), {{"models", std::int64_t{1}}}).mesh;
+    Random random(1);
+    const TriangleMesh model = creature(Species::raptor, random, 6250);
+    const std::size_t copies = (mesh.triangle_count() - 2) / model.triangle_count();
+    EXPECT_EQ(copies, 15u);
+    for (std::size_t i = 0; i < copies * model.triangle_count(); i += 97) {
+        const auto edge = [](const TriangleMesh& of, std::size_t t) {
+            return glm::length(of.corner(t, 1) - of.corner(t, 0));
+        };
+        ASSERT_NEAR(edge(mesh, i + 2), edge(model, i % model.triangle_count()), 1e-5);
+    }
+}
+
+TEST(Creatures, AreClosedStandOnTheGroundAndKeepToTheirSize) {
+    for (std::uint32_t species = 0; species < kSpecies; ++species)
+        for (const std::size_t triangles : {0, 100, 1000, 30000, 400000}) {
+            SCOPED_TRACE(species);
+            SCOPED_TRACE(triangles);
+            Random random(species + 7);
+            const TriangleMesh model = creature(static_cast<Species>(species), random, triangles);
+            EXPECT_EQ(count(model).degenerate, 0u);
+            EXPECT_EQ(open_edges(model), 0u);
+            EXPECT_GE(model.triangle_count(), triangles);
+            EXPECT_LE(model.triangle_count(),
+                      std::max<std::size_t>(kLeastCreature, triangles + 1000));
+            const auto bounds = model.bounds();
+            EXPECT_NEAR(bounds.lower.y, -0.02, 1e-5);
+            EXPECT_GT(bounds.upper.y, 1.6);
+            EXPECT_LT(bounds.upper.y, 2.6);
+            for (const glm::vec3 p : model.positions)
+                ASSERT_LT(glm::length(glm::vec2(p.x, p.z)), 2.8);
+        }
 }
 
 TEST(City, IsSoundAtTheExtremesOfItsParameters) {

@@ -235,6 +235,35 @@ TEST_F(PoolSettings, BadOnesAreRefused) {
     EXPECT_THROW(Pool(tests::device(), shader, sort_spec(), config), std::invalid_argument);
 }
 
+TEST_F(PoolSettings, IterationsThatAClientDoesNotCountAreNotLostInSilence) {
+    struct Task {
+        std::uint32_t iterations;
+    };
+    struct Client {
+        std::uint64_t counted;
+    };
+    gpu::Device& device = tests::device();
+    const auto& shader =
+        gpu::find_shader(tests_taskpool_pool_shaders(), "tests/taskpool/clients/uncounted.comp");
+    Pool pool(device, shader, {sizeof(Task), 1}, {.subgroups = 1});
+    const gpu::Buffer counted(device, 8, "counted");
+    const auto run = [&](std::uint32_t iterations) {
+        pool.restart(RootStart{0, 0, 1}, Task{iterations});
+        gpu::Recorder recorder(device);
+        pool.record(recorder, Client{counted.address()});
+        device.run(recorder);
+        EXPECT_FALSE(pool.advance());
+        return gpu::read<std::uint32_t>(counted, 1)[0];
+    };
+    const std::uint32_t limit = device.info().loop_limit;
+    for (const std::uint32_t iterations : {1000u, 60'000u}) EXPECT_EQ(run(iterations), iterations);
+    if (limit > 0) {
+        EXPECT_THROW(run(limit), gpu::Error);
+    } else {
+        EXPECT_EQ(run(100'000), 100'000u);
+    }
+}
+
 TEST_F(PoolSettings, TracesChunksAsChromeEvents) {
     PoolConfig config;
     config.trace_capacity = 1000;

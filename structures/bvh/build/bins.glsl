@@ -5,12 +5,10 @@
 //
 // Measured on lavapipe: bins in shared memory, two accesses per word and primitive, were far slower.
 
-// Loops over hops of 1, 2, 4 ... lanes run over the logarithm: Mesa before 23 unrolls no loop whose
-// variable is multiplied or divided, and each iteration would have to be told to pool_spend().
-
 layout(constant_id = 25) const uint kLanes = 8;      // in a subgroup
 layout(constant_id = 16) const uint kAxisLanes = 8;  // lanes that hold one axis' bins
-const uint kLaneBits = 7, kAxisLaneBits = 3;         // kLanes <= 128, kAxisLanes <= 8
+const uint kAxisLaneBits = 3;                        // kAxisLanes <= 8
+#include "taskpool/primitives/lanes.glsl"
 const uint kSlots = kBins / kAxisLanes;              // bins of an axis per lane
 layout(constant_id = 17) const uint kSets = 3;       // axes per lane: 3 kAxisLanes / subgroup size, up
 const uint kRows = kSets * kSlots;

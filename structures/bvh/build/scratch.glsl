@@ -45,18 +45,6 @@ void fetch_boxes(uint first, out KeyBox boxes[4]) {
     }
 }
 
-/// Sum of the lanes' values up to this one; by shuffles, as lavapipe makes scans and ballots of loops.
-uint sum_to_here(uint mine) {
-    [[unroll]] for (uint k = 0; k < kLaneBits; ++k) {
-        const uint apart = 1u << k;
-        if (apart < kLanes) {
-            const uint before = subgroupShuffle(mine, gl_SubgroupInvocationID - apart);
-            mine += gl_SubgroupInvocationID < apart ? 0 : before;
-        }
-    }
-    return mine;
-}
-
 /// Exclusive scan over the chunks of a range, of the sum of each one's `words` words from `from` on;
 /// leaves it in their first words and returns the sum of all.
 uint scan_chunks(uint first, uint count, uint from, uint words) {

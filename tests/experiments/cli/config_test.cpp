@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <unistd.h>
+
+#include <fstream>
 #include <random>
 
 #include "tests/experiments/cli/fake_rows.hpp"
@@ -67,6 +70,62 @@ TEST(Config, ReadsWhatIsWritten) {
     ASSERT_EQ(config.methods.size(), 1u);
     EXPECT_EQ(config.methods[0].settings.integer("width"), 16);
     EXPECT_EQ(config.methods[0].variant, "width=16");
+}
+
+const std::string kPath =
+    "path = { frames = 5, keys = [{ eye = [0, 4, 0], target = [1, 4, 0] }, { eye = [2, 4, 0], "
+    "target = [3, 4, 0], fov_y_degrees = 60 }] }\n";
+
+/// kText with `path` in place of its camera.
+std::string with_path(const std::string& path) {
+    std::string text = kText;
+    const std::size_t begin = text.find("camera = "), end = text.find('\n', begin) + 1;
+    return text.replace(begin, end - begin, path);
+}
+
+TEST(Config, ReadsPathsInPlaceAndFromFiles) {
+    const Scene scene = parse(with_path(kPath)).scenes[0];
+    ASSERT_TRUE(scene.path);
+    EXPECT_EQ(scene.frames(), 5);
+    EXPECT_FALSE(scene.all_pictures);
+    ASSERT_EQ(scene.path->keys.size(), 2u);
+    EXPECT_EQ(scene.path->keys[1].camera->eye, glm::vec3(2, 4, 0));
+    EXPECT_EQ(scene.path->keys[0].camera->fov_y_degrees, 45);
+    EXPECT_EQ(scene.path->keys[1].camera->fov_y_degrees, 60);
+    EXPECT_FALSE(scene.path->keys[0].light);
+
+    const auto file = std::filesystem::temp_directory_path() /
+                      ("grove-walk-" + std::to_string(getpid()) + ".json");
+    std::ofstream(file) << R"([{"eye": [0, 4, 0], "target": [1, 4, 0]},
+        {"eye": [2, 4, 0], "target": [3, 4, 0], "fov_y_degrees": 60}])";
+    const std::string from_file = "path = { frames = 5, keys = \"" + file.string() + "\" }\n";
+    EXPECT_EQ(parse(with_path(from_file)).scenes[0].path, scene.path);
+    // What decides the measurement is in the resolved config, wherever it was written.
+    EXPECT_EQ(to_json(parse(with_path(from_file))), to_json(parse(with_path(kPath))));
+
+    std::ofstream(file) << R"([{"eye": [0, 4, 0], "target": [1, 4, 0]}, {"eye": [0, 4, 0]}])";
+    EXPECT_THAT(refusal(with_path(from_file)), HasSubstr(file.string() + ": key 2: "));
+    std::ofstream(file) << R"({"eye": 1})";
+    EXPECT_THAT(refusal(with_path(from_file)), HasSubstr(file.string() + ": is no list of keys"));
+    std::ofstream(file) << "[{";
+    EXPECT_THAT(refusal(with_path(from_file)), HasSubstr(file.string() + ": is no JSON"));
+    std::filesystem::remove(file);
+    EXPECT_THAT(refusal(with_path(from_file)), HasSubstr("t.toml:7: '" + file.string()));
+}
+
+TEST(Config, RefusesPathsThatCannotBeFollowed) {
+    EXPECT_THAT(refusal(with_path("path = { frames = 5 }\n")), HasSubstr("lacks the key 'keys'"));
+    EXPECT_THAT(refusal(with_path("path = { keys = [] }\n")), HasSubstr("lacks the key 'frames'"));
+    EXPECT_THAT(refusal(with_path(replaced(kPath, "5", "0"))), HasSubstr("'frames' is 0"));
+    EXPECT_THAT(refusal(with_path("path = { frames = 5, keys = [] }\n")), HasSubstr("no keys"));
+    EXPECT_THAT(refusal(with_path(replaced(kPath, "fov_y_degrees", "fov"))),
+                HasSubstr("t.toml:7: unknown key 'fov'"));
+    EXPECT_THAT(refusal(with_path(replaced(kPath, "eye = [2, 4, 0], ", ""))),
+                HasSubstr("lacks the key 'eye'"));
+    EXPECT_THAT(refusal(replaced(kText, "resolution", kPath + "resolution")),
+                HasSubstr("t.toml:9: 'path' excludes 'camera'"));
+    EXPECT_THAT(refusal(replaced(with_path(kPath), "shadows", "build")),
+                HasSubstr("'path' is a key of kind 'shadows' alone"));
 }
 
 TEST(Config, UnknownKeysNameLineAndSuggestion) {

@@ -59,6 +59,60 @@ TEST_F(RunTest, MethodsTakeTurns) {
                                             "rival2"));
 }
 
+/// The scene of write_config() goes along a path of three frames.
+const char* const kPath =
+    " --set 'scene.0.path={frames=3, keys=[{light={type=\"point\", position=[-9, 9, 0]}},"
+    "{light={type=\"point\", position=[9, 9, 0]}}]}'";
+
+TEST_F(RunTest, PathsAreMeasuredFrameByFrame) {
+    write_config(kTwoMethods);
+    const Outcome run = fake("run test.toml --out r --quiet" + std::string(kPath));
+    ASSERT_EQ(run.code, 0) << run.err;
+    const auto rows = experiments::measure::read_samples(folder_ / "r/samples.csv");
+    std::map<std::pair<std::string, int>, int> repetitions;  // of method and frame
+    std::vector<int> frames;
+    for (const auto& row : rows) {
+        if (row.sample.metric == "total_ms") ++repetitions[{row.key.method, row.key.frame}];
+        if (row.sample.metric == "gbuffer_ms") frames.push_back(row.key.frame);
+    }
+    EXPECT_EQ(frames, (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(repetitions.size(), 6u);
+    for (const auto& [key, count] : repetitions) EXPECT_EQ(count, 3);
+    // Statistics are over frames and repetitions; every frame has its own truth.
+    const auto results = experiments::measure::summarise(rows);
+    EXPECT_EQ(results[0].find("total_ms")->statistics.n, 9);
+    std::set<double> lit;
+    for (const auto& row : rows)
+        if (row.sample.metric == "false_lit" && row.key.method == "stripes")
+            lit.insert(row.sample.value);
+    EXPECT_GT(lit.size(), 1u);
+    EXPECT_EQ(json("r/manifest.json").at("images").size(), 7u);  // of the first frame
+    EXPECT_THAT(read_text(folder_ / "r/report.html"), HasSubstr("run time along the path"));
+
+    const Outcome drawn = fake("run test.toml --out d --quiet" + std::string(kPath) +
+                               " --set scene.0.path.pictures=true");
+    ASSERT_EQ(drawn.code, 0) << drawn.err;
+    EXPECT_EQ(json("d/manifest.json").at("images").size(), 21u);
+}
+
+TEST_F(RunTest, KilledPathsGoOnInTheirFrame) {
+    write_config(kTwoMethods);
+    const std::string run = "run test.toml --out r --quiet" + std::string(kPath);
+    // Four answers a frame, the first a warm-up: the last of the second frame.
+    const std::string killer = run + " --set method.0.kill_at=8";
+    EXPECT_EQ(fake(killer).code, 128 + 9);
+    EXPECT_EQ(experiments::measure::read_samples(folder_ / "r/samples.csv").back().key.frame, 1);
+    const Outcome resumed = fake(killer + " --resume");
+    ASSERT_EQ(resumed.code, 0) << resumed.err;
+    const auto rows = experiments::measure::read_samples(folder_ / "r/samples.csv");
+    std::set<experiments::measure::Key> seen;
+    for (const auto& row : rows)
+        if (row.sample.metric == "total_ms") {
+            EXPECT_TRUE(seen.insert(row.key).second) << row.key.frame;
+        }
+    EXPECT_EQ(seen.size(), 18u);
+}
+
 TEST_F(RunTest, QuietPrintsTheFolderAlone) {
     write_config();
     const Outcome run = fake("run test.toml --out r --quiet");

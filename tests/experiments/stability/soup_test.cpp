@@ -1,4 +1,4 @@
-// Random scenes of everything that is hard at once, method bvh against the judge.
+// Random scenes of everything that is hard at once, exact methods against the judge.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
@@ -90,10 +90,10 @@ Scene soup(std::uint64_t seed, int size, double scale) {
     return scene;
 }
 
-class BvhSoup : public tests::GpuTest {};
+class MethodSoup : public tests::GpuTest, public testing::WithParamInterface<const char*> {};
 
-TEST_F(BvhSoup, AgreesWithTheJudge) {
-    const auto method = tests::make_method("bvh", {});
+TEST_P(MethodSoup, AgreesWithTheJudge) {
+    const auto method = tests::make_method(GetParam(), {});
     const bool ok = rc::check([&] {
         const auto seed = *rc::gen::arbitrary<std::uint64_t>();
         const int size = *rc::gen::inRange(1, 120);
@@ -108,5 +108,8 @@ TEST_F(BvhSoup, AgreesWithTheJudge) {
     });
     EXPECT_TRUE(ok);
 }
+
+INSTANTIATE_TEST_SUITE_P(Default, MethodSoup, testing::Values("bvh", "metric_tree"),
+                         [](const auto& method) { return std::string(method.param); });
 
 }  // namespace

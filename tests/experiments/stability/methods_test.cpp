@@ -1,4 +1,4 @@
-// Method bvh passes the stress suite, in every way to walk its tree.
+// Exact methods pass the stress suite, in every way to walk their trees.
 #include <gtest/gtest.h>
 
 #include "experiments/stability/suite.hpp"
@@ -9,12 +9,18 @@ namespace {
 
 using namespace experiments::stability;
 
-class BvhStability : public tests::GpuTest, public testing::WithParamInterface<const char*> {};
+struct Way {
+    const char* method;
+    const char* query;
+};
 
-TEST_P(BvhStability, PassesTheSuite) {
-    const auto method = tests::make_method("bvh", {{"query", std::string(GetParam())}});
+class MethodStability : public tests::GpuTest, public testing::WithParamInterface<Way> {};
+
+TEST_P(MethodStability, PassesTheSuite) {
+    const auto method =
+        tests::make_method(GetParam().method, {{"query", std::string(GetParam().query)}});
     // The way most used meets most variations.
-    const bool usual = GetParam() == std::string("beam");
+    const bool usual = GetParam().query == std::string("beam");
     const Selection few{{}, usual ? 3 : 1, 1, {1e-4}};
     for (const StressTest& test : suite())
         for (const Light::Type type : test.light_types())
@@ -32,7 +38,13 @@ TEST_P(BvhStability, PassesTheSuite) {
                 }
 }
 
-INSTANTIATE_TEST_SUITE_P(Query, BvhStability, testing::Values("beam", "packet", "lane"),
-                         [](const auto& query) { return std::string(query.param); });
+INSTANTIATE_TEST_SUITE_P(Query, MethodStability,
+                         testing::Values(Way{"bvh", "beam"}, Way{"bvh", "packet"},
+                                         Way{"bvh", "lane"}, Way{"metric_tree", "beam"},
+                                         Way{"metric_tree", "packet"}, Way{"metric_tree", "lane"},
+                                         Way{"metric_tree", "stackless"}),
+                         [](const auto& way) {
+                             return std::string(way.param.method) + '_' + way.param.query;
+                         });
 
 }  // namespace
