@@ -29,7 +29,7 @@ std::span<const Parameter> parameters() {
              {"beam", "packet", "lane", "stackless"}},
             {"statistics", false, "count nodes and triangles per point (slower)"},
             {"stack", std::int64_t{kStack}, "stack entries of a beam or packet", {}, 2, kStack},
-            {"density", std::int64_t{64}, "triangles per point a beam may meet", {}, 0, 1e6},
+            {"density", std::int64_t{16}, "triangles per point a beam may meet", {}, 0, 1e6},
             {"cull_receivers", false, "leave out clusters that can shadow no point asked about"},
             {"depth_test", true, "leave out subtrees behind the point"},
             {"interval_test", true, "leave out overlapping subtrees out of reach"},
@@ -80,7 +80,7 @@ double milliseconds_since(std::chrono::steady_clock::time_point begin) {
 
 MetricTreeMethod::MetricTreeMethod(taskpool::gpu::Device& device, const Settings& settings)
     : device_(device),
-      cluster_config_(cluster_config(settings)),
+      settings_(settings),
       reference_(reference_config(settings)),
       build_(device, build_config(settings)),
       limits_(limits(settings)),
@@ -95,7 +95,7 @@ MetricTreeMethod::MetricTreeMethod(taskpool::gpu::Device& device, const Settings
 
 void MetricTreeMethod::prepare(const TriangleMesh& mesh) {
     const auto begin = std::chrono::steady_clock::now();
-    clustering_ = cluster(mesh, cluster_config_);
+    clustering_ = make_clusters(device_, mesh, settings_);
     cluster_ms_ = milliseconds_since(begin);
     bounds_ = mesh.bounds();
     triangle_count_ = clustering_.order.size();

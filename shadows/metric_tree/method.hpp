@@ -32,7 +32,7 @@ class MetricTreeMethod final : public Method {
     double build_on_host(const structures::geometry::Light& light);
 
     taskpool::gpu::Device& device_;
-    structures::metric_tree::ClusterConfig cluster_config_;
+    structures::Settings settings_;
     /// Absent: built on the device.
     std::optional<structures::metric_tree::ReferenceConfig> reference_;
     structures::metric_tree::MetricTreeBuild build_;

@@ -41,7 +41,8 @@ class Hash {
 class MetricTreeBuilder final : public Builder {
   public:
     MetricTreeBuilder(taskpool::gpu::Device& device, const Settings& settings)
-        : cluster_config_(cluster_config(settings)),
+        : device_(device),
+          settings_(settings),
           place_(settings.real("light_x"), settings.real("light_y"), settings.real("light_z")),
           directional_(settings.boolean("directional")),
           build_(device, build_config(settings)) {
@@ -54,7 +55,7 @@ class MetricTreeBuilder final : public Builder {
     }
     void prepare(const geometry::TriangleMesh& mesh) override {
         triangle_count_ = mesh.triangle_count();
-        clustering_ = cluster(mesh, cluster_config_);
+        clustering_ = make_clusters(device_, mesh, settings_);
         build_.prepare(clustering_, mesh);
         const geometry::Light light = light_for(mesh.bounds());
         build_.set_light(light);
@@ -133,7 +134,8 @@ class MetricTreeBuilder final : public Builder {
         return {geometry::Light::Type::directional, box.center() - place};
     }
 
-    ClusterConfig cluster_config_;
+    taskpool::gpu::Device& device_;
+    Settings settings_;
     glm::dvec3 place_;
     bool directional_;
     MetricTreeBuild build_;

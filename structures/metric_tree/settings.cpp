@@ -1,5 +1,7 @@
 #include "structures/metric_tree/settings.hpp"
 
+#include "structures/metric_tree/cluster_build.hpp"
+
 namespace structures::metric_tree {
 
 std::vector<Parameter> tree_parameters() {
@@ -9,6 +11,10 @@ std::vector<Parameter> tree_parameters() {
          "how the tree is built: on the GPU, or on the CPU",
          {"insertion", "median", "cost", "cpu_median", "cpu_cost"}},
         {"cluster_size", std::int64_t{16}, "triangles in a cluster at most", {}, 1, 64},
+        {"clustering",
+         std::string("cpu"),
+         "where triangles are clustered, once per mesh",
+         {"cpu", "gpu"}},
         {"capsules", true, "long clusters become capsules, not balls"},
         {"cull_facing", false,
          "leave out clusters that face away from the light: for closed meshes of one winding"},
@@ -24,12 +30,26 @@ std::vector<Parameter> tree_parameters() {
     };
 }
 
+namespace {
+
 ClusterConfig cluster_config(const Settings& settings) {
     ClusterConfig config;
     config.max_triangles = static_cast<std::uint32_t>(settings.integer("cluster_size"));
     config.capsules = settings.boolean("capsules");
     config.seed = static_cast<std::uint64_t>(settings.integer("seed"));
     return config;
+}
+
+}  // namespace
+
+Clustering make_clusters(taskpool::gpu::Device& device, const geometry::TriangleMesh& mesh,
+                         const Settings& settings) {
+    const ClusterConfig config = cluster_config(settings);
+    if (settings.text("clustering") == "cpu") return cluster(mesh, config);
+    ClusterBuild build(device, config);
+    build.prepare(mesh);
+    taskpool::pool::run(device, build);
+    return build.read_back();
 }
 
 BuildConfig build_config(const Settings& settings) {

@@ -14,7 +14,9 @@ namespace structures::metric_tree {
 /// `build`, `cluster_size`, `capsules`, `cull_facing`, `seed`, and those of the pool.
 std::vector<Parameter> tree_parameters();
 
-ClusterConfig cluster_config(const Settings& settings);
+/// The clusters of `mesh` as the settings want them, made on the CPU or on the device.
+Clustering make_clusters(taskpool::gpu::Device& device, const geometry::TriangleMesh& mesh,
+                         const Settings& settings);
 BuildConfig build_config(const Settings& settings);
 /// None unless `build` names a CPU builder.
 std::optional<ReferenceConfig> reference_config(const Settings& settings);
