@@ -147,7 +147,7 @@ void reach_depth(uint depth) {
 bool progresses(Task task) {
     const uint others = task.range.count - 1;
     const uint largest = max(max(task.counts[0], task.counts[1]), task.counts[2]);
-    return task.range.count <= kSubtreeElements || largest + others / kSubtreeElements <= others;
+    return task.range.count <= kChainElements || largest + others / 32 <= others;
 }
 
 uint first_phase(Range range) {

@@ -26,7 +26,7 @@ struct Client {
 };
 static_assert(sizeof(Task) == 72 && sizeof(Client) == 48);
 
-constexpr std::uint32_t kLoops = 24;  // see ClientSpec::loops
+constexpr std::uint32_t kLoops = 40;  // see ClientSpec::loops
 
 std::size_t scratch_words(std::size_t clusters) {
     return (clusters / kChunkElements + 1) * kScratchWords;
@@ -45,14 +45,15 @@ pool::ClientSpec client_spec(const gpu::Device& device, BuilderKind builder,
     // As choice_iterations() of the kernel.
     const auto choice = [&](std::uint32_t count, std::uint32_t stride) {
         const std::uint32_t candidates = by_cost ? 3 * std::min(kQuantiles, count) : count;
-        return (candidates / stride + 1) * ((by_cost ? 2 : 1) * count + 1);
+        return (candidates / stride + 2) * ((by_cost ? 2 : 1) * (count + 1) + 1);
     };
     // The longest subtree is one where every range loses but its pivot.
     const std::uint32_t turn = pool::turn_iterations(device, kLoops);
     std::uint32_t subtree = 0;
     for (std::uint32_t count = kSubtreeElements; count > leaf; --count)
-        subtree += count + choice(count, lanes) + 4 * (count / lanes + 1) + 2 * turn;
-    for (std::uint32_t count = leaf; count-- > 0;) subtree += 3 * leaf + choice(count, 1) + turn;
+        subtree += 4 * (count + 1) + choice(count, lanes) + 4 * (count / lanes + 2) + 2 * turn;
+    for (std::uint32_t count = leaf; count-- > 0;)
+        subtree += 5 * (leaf + 1) + choice(count, 1) + turn;
     const std::uint32_t large =
         kPivotSample + choice(kDeltaSample, lanes) + 8 * kChunkElements / lanes;
     // Scans in transitions: enough for 8192 chunks by 8 lanes.

@@ -49,9 +49,9 @@ struct Choice {
 };
 
 uint candidates_of(uint count) { return kByCost ? 3 * min(kQuantiles, count) : count; }
-/// Loop iterations of best_delta().
+/// Loop iterations of best_delta(), with each loop's last, in which it ends.
 uint choice_iterations(uint count, uint stride) {
-    return (candidates_of(count) / stride + 1) * ((kByCost ? 2 : 1) * count + 1);
+    return (candidates_of(count) / stride + 2) * ((kByCost ? 2 : 1) * (count + 1) + 1);
 }
 
 /// The best delta for the `count` reaches from `from` on, among every `stride`-th candidate.
@@ -130,5 +130,5 @@ void choose(inout Task task) {
     subgroup_sync();
     task.delta = listed ? -1.0 : subgroupShuffle(best.delta, 0);
     if (is_large(range)) clear_tally(range);
-    pool_spend(3 * samples + sampled / kLanes + 1 + choice_iterations(sampled, kLanes));
+    pool_spend(4 * (samples + 1) + sampled / kLanes + 2 + choice_iterations(sampled, kLanes));
 }

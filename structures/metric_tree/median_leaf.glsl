@@ -69,7 +69,7 @@ void build_leaf(Range range) {
         } else {
             members = 0;
         }
-        pool_spend(3 * range.count + kTurnIterations + choice_iterations(lane_max(others), 1));
+        pool_spend(5 * (range.count + 1) + kTurnIterations + choice_iterations(lane_max(others), 1));
     }
     reach_depth(lane_max(lane < range.count ? depth : 0));
     pool_progress(range.count);

@@ -28,7 +28,7 @@ void gather_chunk(uint begin, uint end, bool counting) {
         pool.client.scratch.at[word] = int(target);
         pool_progress(end - begin - target);
     }
-    pool_spend((end - begin) / kLanes + 1);
+    pool_spend((end - begin) / kLanes + 2);
 }
 
 /// Exclusive scan of word `word` of a range's chunks; returns the sum.
@@ -100,7 +100,7 @@ void classify_chunk(inout Task task, uint begin, uint end) {
                     lane_max(bounds.over_max), lane_min(bounds.min_depth));
     near_count = lane_sum(near_count);
     far_count = lane_sum(far_count);
-    pool_spend((end - begin) / kLanes + 1);
+    pool_spend((end - begin) / kLanes + 2);
     if (!is_large(task.range)) {
         task.bounds = bounds;
         task.counts =
@@ -135,7 +135,7 @@ void partition_chunk(Task task, uint begin, uint end) {
         const uint word = ids_of(task.range.side).at[min(mine, end - 1)];
         const uint part = word >> kPartShift;
         const bool used = mine < end && mine != task.pivot;
-        // Three counts in a word: no more than 64 lanes.
+        // Three counts in a word: there are fewer than 1024 lanes.
         const uint to_here = sum_to_here(used ? 1u << 10 * part : 0);
         const uint all = subgroupShuffle(to_here, kLanes - 1);
         const uint before = bitfieldExtract(to_here, int(10 * part), 10) - 1;
@@ -145,7 +145,7 @@ void partition_chunk(Task task, uint begin, uint end) {
         far_at += bitfieldExtract(all, 10, 10);
         over_at += bitfieldExtract(all, 20, 10);
     }
-    pool_spend((end - begin) / kLanes + 1);
+    pool_spend((end - begin) / kLanes + 2);
 }
 
 // ---- Lists ----------------------------------------------------------------------------------------
@@ -174,5 +174,5 @@ void list_chunk(Task task, uint begin, uint end) {
             atomicAdd(pool.client.header.header.bucketed, task.range.count - 1);
     }
     pool_progress(end - begin);
-    pool_spend((end - begin) / kLanes + 1);
+    pool_spend((end - begin) / kLanes + 2);
 }

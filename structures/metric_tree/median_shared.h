@@ -27,7 +27,7 @@ MEDIAN_CONSTANT uint kPhaseEnd = 8;        // no phase: the range is done
 /// In a chunk at least, unless it is the range's only one.
 MEDIAN_CONSTANT uint kChunkElements = 256;
 /// In a range that one chunk builds the subtree of, at most.
-MEDIAN_CONSTANT uint kSubtreeElements = 32;
+MEDIAN_CONSTANT uint kSubtreeElements = 20;
 /// In a range that a subgroup holds in its lanes, at most.
 MEDIAN_CONSTANT uint kMostLeafRange = 16;
 /// Candidates for a pivot, no more than lanes; elements that they are judged by, and those that
@@ -37,6 +37,8 @@ MEDIAN_CONSTANT uint kPivotSample = 32;
 MEDIAN_CONSTANT uint kDeltaSample = 64;
 /// Distances of each kind that are tried as delta by cost.
 MEDIAN_CONSTANT uint kQuantiles = 8;
+/// In a range that is split even if that takes but its pivot off, at most.
+MEDIAN_CONSTANT uint kChainElements = 64;
 /// Pivots tried before what is left becomes a list.
 MEDIAN_CONSTANT uint kTries = 2;
 /// Of a chunk; see median_partition.glsl.
