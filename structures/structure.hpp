@@ -39,10 +39,11 @@ class Builder {
     virtual Samples metrics() = 0;
     /// Reads the built structure back and checks every invariant; one line per violation.
     virtual std::vector<std::string> validate() = 0;
-    /// A hash of the finished structure's bytes: equal builds have equal fingerprints. 0: it cannot be
-    /// read.
+    /// A hash of the finished structure's bytes: equal builds have equal fingerprints. 0: it cannot
+    /// be read.
     virtual std::uint64_t fingerprint() = 0;
-    /// The last build chunk by chunk as Chrome trace-event JSON; empty unless the settings ask for it.
+    /// The last build chunk by chunk as Chrome trace-event JSON; empty unless the settings ask for
+    /// it.
     virtual std::string trace() { return {}; }
 };
 

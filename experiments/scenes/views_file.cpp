@@ -87,8 +87,7 @@ std::vector<std::string> view_names(const std::filesystem::path& path,
     try {
         const json views = read_views(path, scene_file.filename().string());
         std::vector<std::string> names;
-        for (const auto& [name, view] : views.items())
-            names.push_back(name);
+        for (const auto& [name, view] : views.items()) names.push_back(name);
         return names;
     } catch (const FormatError& error) {
         throw LoadError(path, error.what());

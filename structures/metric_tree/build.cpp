@@ -107,8 +107,8 @@ void MetricTreeBuild::record(gpu::Recorder& recorder) {
         struct {
             std::uint64_t clusters, nodes, header, keep;
             std::uint32_t count, cull_facing;
-        } push{clusters_.address(), nodes_.address(), header_.address(), keep_,
-               cluster_count_, config_.cull_facing};
+        } push{clusters_.address(), nodes_.address(),   header_.address(), keep_,
+               cluster_count_,      config_.cull_facing};
         recorder.dispatch(active_->elements, push, std::min(cluster_count_ / 1024 + 1, 8192u));
         recorder.barrier();
     }

@@ -55,8 +55,8 @@ class MetricTreeBuild final : public taskpool::pool::Job {
     void prepare(const Clustering& clustering, const geometry::TriangleMesh& mesh);
     /// The light of builds from the next restart() on; before, a point light at the origin.
     void set_light(const geometry::Light& light) { light_ = light; }
-    /// Address of a mask with a bit per cluster, of those that builds from now on keep; 0: all. It has
-    /// to be written when the first recorded launch runs.
+    /// Address of a mask with a bit per cluster, of those that builds from now on keep; 0: all. It
+    /// has to be written when the first recorded launch runs.
     void set_mask(std::uint64_t keep) { keep_ = keep; }
     /// Uploads a tree built elsewhere, from the clustering that was prepared. Throws
     /// std::invalid_argument if the number of nodes is another.

@@ -1,5 +1,5 @@
-// The BVH built on the GPU: valid at every size where things break, as good as the CPU builders, and
-// the same whatever the pool's policy, workgroups and budget.
+// The BVH built on the GPU: valid at every size where things break, as good as the CPU builders,
+// and the same whatever the pool's policy, workgroups and budget.
 #include "structures/bvh/bvh.hpp"
 
 #include <gmock/gmock.h>
@@ -45,10 +45,10 @@ TEST_F(BvhGpu, IsValidAtEverySize) {
     for (Split split : {Split::binned_sah, Split::spatial_median}) {
         Config config;
         config.split = split;
-        for (std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{4},
-                                  std::size_t{5}, lanes - 1, lanes, lanes + 1, std::size_t{63},
-                                  std::size_t{65}, std::size_t{1023}, std::size_t{1024},
-                                  std::size_t{1025}, std::size_t{2049}, std::size_t{20000}}) {
+        for (std::size_t count :
+             {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{4}, std::size_t{5},
+              lanes - 1, lanes, lanes + 1, std::size_t{63}, std::size_t{65}, std::size_t{1023},
+              std::size_t{1024}, std::size_t{1025}, std::size_t{2049}, std::size_t{20000}}) {
             const TriangleMesh mesh = soup(count);
             expect_valid(mesh, build(mesh, config), config);
         }
@@ -163,7 +163,8 @@ TEST_F(BvhGpu, KeepsToItsMemoryEstimate) {
     BvhBuild job(tests::device(), {});
     job.prepare(mesh);
     const std::size_t input = mesh.positions.size() * 12 + count * 12;
-    EXPECT_LE(tests::device().allocated_bytes() - before, job.required_bytes(count) + input + 65536);
+    EXPECT_LE(tests::device().allocated_bytes() - before,
+              job.required_bytes(count) + input + 65536);
     // Beside the mesh and the tree, at most 200 bytes a triangle.
     EXPECT_LT(job.required_bytes(count) - BvhBuild::output_bytes(count), 200 * count);
 }
