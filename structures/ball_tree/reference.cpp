@@ -1,11 +1,11 @@
 // The CPU builder and the checks; reference.hpp describes them.
 #include "structures/ball_tree/reference.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <limits>
+
+#include "structures/violations.hpp"
 
 namespace structures::ball_tree {
 namespace {
@@ -44,7 +44,7 @@ std::uint32_t split(std::vector<BallPoint>& points, const Range& range, const ge
     return static_cast<std::uint32_t>(middle - points.begin());
 }
 
-class Validator {
+class Validator : Violations {
   public:
     Validator(const geometry::TriangleMesh& mesh, const Tree& tree, std::uint32_t leaf_size)
         : mesh_(mesh), tree_(tree), leaf_size_(leaf_size) {}
@@ -58,15 +58,10 @@ class Validator {
             fail("{} points of which {} in leaves, for {} triangles that are not degenerate",
                  tree_.points.size(), held_, expected);
         check_points();
-        return std::move(lines_);
+        return take_lines();
     }
 
   private:
-    template <typename... Args>
-    void fail(fmt::format_string<Args...> format, Args&&... args) {
-        if (lines_.size() < 20) lines_.push_back(fmt::format(format, std::forward<Args>(args)...));
-    }
-
     void check_nodes() {
         std::vector<bool> reached(tree_.nodes.size());
         std::vector<Range> stack{{0, 0, static_cast<std::uint32_t>(tree_.points.size()), 0}};
@@ -133,7 +128,6 @@ class Validator {
     const Tree& tree_;
     std::uint32_t leaf_size_;
     std::size_t held_ = 0;
-    std::vector<std::string> lines_;
 };
 
 }  // namespace

@@ -1,15 +1,13 @@
 #include "structures/bvh/validate.hpp"
 
-#include <fmt/format.h>
+#include "structures/violations.hpp"
 
 namespace structures::bvh {
 namespace {
 
 using geometry::Aabb;
 
-constexpr std::size_t kLinesAtMost = 20;
-
-class Validator {
+class Validator : Violations {
   public:
     Validator(const geometry::TriangleMesh& mesh, const Tree& tree, const Limits& limits)
         : mesh_(mesh), tree_(tree), limits_(limits) {}
@@ -23,18 +21,10 @@ class Validator {
             check_nodes();
         }
         check_primitives();
-        if (failures_ > kLinesAtMost)
-            lines_.push_back(fmt::format("and {} more violations", failures_ - kLinesAtMost));
-        return std::move(lines_);
+        return take_lines();
     }
 
   private:
-    template <typename... Args>
-    void fail(fmt::format_string<Args...> format, Args&&... args) {
-        if (++failures_ <= kLinesAtMost)
-            lines_.push_back(fmt::format(format, std::forward<Args>(args)...));
-    }
-
     void check_nodes() {
         const auto node_count = tree_.nodes.size();
         reached_.resize(node_count);
@@ -120,8 +110,6 @@ class Validator {
     const Limits& limits_;
     std::vector<bool> reached_;             ///< by node
     std::vector<std::uint32_t> leaf_uses_;  ///< by primitive
-    std::vector<std::string> lines_;
-    std::size_t failures_ = 0;
 };
 
 }  // namespace

@@ -1,17 +1,15 @@
 // A clustering against its mesh, triangle by triangle.
-#include <fmt/format.h>
 
 #include <cmath>
 
 #include "structures/metric_tree/clustering.hpp"
 #include "structures/metric_tree/volume.hpp"
+#include "structures/violations.hpp"
 
 namespace structures::metric_tree {
 namespace {
 
-constexpr std::size_t kLinesAtMost = 20;
-
-class Validator {
+class Validator : Violations {
   public:
     Validator(const geometry::TriangleMesh& mesh, const Clustering& clustering,
               const ClusterConfig& config)
@@ -42,18 +40,10 @@ class Validator {
                 fail("triangle {}: in {} clusters", triangle, uses);
             }
         }
-        if (failures_ > kLinesAtMost)
-            lines_.push_back(fmt::format("and {} more violations", failures_ - kLinesAtMost));
-        return std::move(lines_);
+        return take_lines();
     }
 
   private:
-    template <typename... Args>
-    void fail(fmt::format_string<Args...> format, Args&&... args) {
-        if (++failures_ <= kLinesAtMost)
-            lines_.push_back(fmt::format(format, std::forward<Args>(args)...));
-    }
-
     void check_form(std::size_t c, const Cluster& cluster) {
         if (cluster.count < 1 || cluster.count > config_.max_triangles)
             fail("cluster {}: {} triangles instead of 1 to {}", c, cluster.count,
@@ -108,8 +98,6 @@ class Validator {
     const Clustering& clustering_;
     const ClusterConfig& config_;
     std::vector<std::uint32_t> uses_;  ///< by triangle
-    std::vector<std::string> lines_;
-    std::size_t failures_ = 0;
 };
 
 }  // namespace

@@ -1,24 +1,22 @@
 // Checks of metric trees that share no formula with their builders: points of elements and of
 // clusters are taken, and what queries there need is demanded of every bound on their way.
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 #include <numbers>
 #include <utility>
 
 #include "structures/metric_tree/metric.hpp"
 #include "structures/metric_tree/tree.hpp"
+#include "structures/violations.hpp"
 
 namespace structures::metric_tree {
 namespace {
 
 using glm::dvec3;
 constexpr std::uint32_t kNone = 0xffffffffu;
-constexpr std::size_t kLinesAtMost = 20;
 /// Distances that a query computes are off by less.
 constexpr double kQueryError = 0.25 * kMetricError;
 
@@ -115,7 +113,7 @@ class Geometry {
     bool directional_;
 };
 
-class Validator {
+class Validator : Violations {
   public:
     Validator(const Clustering& clustering, const Tree& tree)
         : clusters_(clustering.clusters),
@@ -144,19 +142,10 @@ class Validator {
             tbb::parallel_for(std::size_t{0}, shape_.preorder.size(),
                               [&](std::size_t i) { check_bounds(shape_.preorder[i]); });
         }
-        if (failures_ > kLinesAtMost)
-            lines_.push_back(fmt::format("and {} more violations", failures_ - kLinesAtMost));
-        return std::move(lines_);
+        return take_lines();
     }
 
   private:
-    template <typename... Args>
-    void fail(fmt::format_string<Args...> format, Args&&... args) {
-        const std::scoped_lock lock(mutex_);
-        if (++failures_ <= kLinesAtMost)
-            lines_.push_back(fmt::format(format, std::forward<Args>(args)...));
-    }
-
     bool linked(std::uint32_t id) const { return shape_.depth[id] != 0; }
 
     void check_membership() {
@@ -358,9 +347,6 @@ class Validator {
     Shape shape_;
     std::vector<std::uint32_t> demanding_;  // nearest at or above a node whose link demands
     std::size_t left_out_ = 0;
-    std::mutex mutex_;
-    std::vector<std::string> lines_;
-    std::size_t failures_ = 0;
 };
 
 }  // namespace
