@@ -24,7 +24,9 @@ void main() {
         }
         const vec2 texel = clamp(vec2(texel_of(place.x), texel_of(place.y)), vec2(0),
                                  vec2(kMapSide - 1));
-        const uint word = texel_word(face, 0, uvec2(texel)), bits = floatBitsToUint(question.depth);
+        // Bits order like floats that are not negative; before the scene nothing shadows a point.
+        const uint word = texel_word(face, 0, uvec2(texel));
+        const uint bits = floatBitsToUint(max(question.depth, 0.0));
         if (push.map.at[word] < bits) atomicMax(push.map.at[word], bits);
     }
 }
