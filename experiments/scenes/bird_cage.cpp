@@ -17,12 +17,7 @@ using structures::geometry::TriangleMesh;
 
 std::span<const Parameter> parameters() {
     static const Parameter list[] = {
-        {"triangles",
-         std::int64_t{100000},
-         "triangles wanted; sets how finely everything is tessellated",
-         {},
-         1000,
-         kMaxTriangles},
+        triangles_parameter("sets how finely everything is tessellated"),
         {"bars", std::int64_t{48}, "bars, at most", {}, 3, 2000},
         {"hoops", std::int64_t{5}, "hoops around them, at most", {}, 0, 200},
         {"birds", std::int64_t{9}, "birds, at most", {}, 1, 60},

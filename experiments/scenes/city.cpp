@@ -16,12 +16,7 @@ using structures::geometry::TriangleMesh;
 
 std::span<const Parameter> parameters() {
     static const Parameter list[] = {
-        {"triangles",
-         std::int64_t{100000},
-         "triangles wanted; the city grows outward until there",
-         {},
-         1000,
-         kMaxTriangles},
+        triangles_parameter("the city grows outward until there"),
         {"height", 40.0, "mean height of the buildings in the middle, metres", {}, 5, 400},
         {"street", 16.0, "width of the streets, metres", {}, 4, 100},
         {"seed", std::int64_t{1}, "random seed"},

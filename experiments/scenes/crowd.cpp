@@ -16,12 +16,7 @@ using structures::geometry::TriangleMesh;
 
 std::span<const Parameter> parameters() {
     static const Parameter list[] = {
-        {"triangles",
-         std::int64_t{100000},
-         "triangles wanted; copies are added until there",
-         {},
-         1000,
-         kMaxTriangles},
+        triangles_parameter("copies are added until there"),
         {"model_triangles",
          std::int64_t{10000},
          "triangles of a copy, about; fewer where that would make less than 16 copies",

@@ -15,12 +15,7 @@ using structures::Settings;
 
 std::span<const Parameter> parameters() {
     static const Parameter list[] = {
-        {"triangles",
-         std::int64_t{100000},
-         "triangles wanted; strands are added until there",
-         {},
-         1000,
-         kMaxTriangles},
+        triangles_parameter("strands are added until there"),
         {"segments", std::int64_t{16}, "stretches along a strand", {}, 2, 128},
         {"sides", std::int64_t{3}, "sides of a strand", {}, 3, 16},
         {"curl", 0.5, "how much strands wind, 0 (straight) to 1", {}, 0, 1},

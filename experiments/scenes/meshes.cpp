@@ -15,12 +15,7 @@ using structures::geometry::TriangleMesh;
 
 std::span<const Parameter> parameters() {
     static const Parameter list[] = {
-        {"triangles",
-         std::int64_t{100000},
-         "triangles wanted; sets how finely the creatures are tessellated",
-         {},
-         1000,
-         kMaxTriangles},
+        triangles_parameter("sets how finely the creatures are tessellated"),
         {"rows", std::int64_t{3}, "rows of creatures", {}, 1, 100},
         {"columns",
          std::int64_t{6},

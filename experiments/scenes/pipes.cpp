@@ -15,12 +15,7 @@ using structures::Settings;
 
 std::span<const Parameter> parameters() {
     static const Parameter list[] = {
-        {"triangles",
-         std::int64_t{100000},
-         "triangles wanted; pipes are added until there",
-         {},
-         1000,
-         kMaxTriangles},
+        triangles_parameter("pipes are added until there"),
         {"sides", std::int64_t{12}, "sides of a pipe", {}, 3, 64},
         {"turn", 0.3, "chance of an elbow in a cell", {}, 0.01, 1},
         {"fill", 0.3, "largest share of the cells that pipes take", {}, 0.01, 0.5},

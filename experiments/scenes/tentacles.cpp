@@ -15,12 +15,7 @@ using structures::Settings;
 
 std::span<const Parameter> parameters() {
     static const Parameter list[] = {
-        {"triangles",
-         std::int64_t{100000},
-         "triangles wanted; tentacles are added until there",
-         {},
-         1000,
-         kMaxTriangles},
+        triangles_parameter("tentacles are added until there"),
         {"bundle", std::int64_t{12}, "tentacles in a bundle", {}, 1, 1000},
         {"segments", std::int64_t{64}, "stretches along a tentacle", {}, 4, 256},
         {"sides", std::int64_t{8}, "sides of a tentacle", {}, 3, 32},
