@@ -141,18 +141,19 @@ Samples MetricTreeMethod::build(const Light& light) {
     double milliseconds = receivers_ ? choose_casters() : 0;
     milliseconds += reference_ ? build_on_host(light) : taskpool::pool::run(device_, build_).gpu_ms;
     const MetricHeader header = build_.header();
-    Samples samples{
-        {"build_ms", milliseconds, "ms"},
-        {"cluster_ms", cluster_ms_, "ms"},
-        {"casters_total", double(header.cluster_count)},
-        {"casters_inserted", double(header.inserted)},
-        {"culled_facing", double(header.culled_facing)},
-        {"culled_unseen", double(header.culled_unseen)},
-        {"special_clusters", double(header.special_count)},
-        {"bucketed_clusters", double(header.bucketed)},
-        {"depth_max", double(header.depth_max)},
-        {"memory_bytes", double(build_.required_bytes(header.cluster_count, triangle_count_)),
-         "bytes"}};
+    Samples samples{{"build_ms", milliseconds, "ms"},
+                    {"cluster_ms", cluster_ms_, "ms"},
+                    {"casters_total", double(header.cluster_count)},
+                    {"casters_inserted", double(header.inserted)},
+                    {"culled_facing", double(header.culled_facing)},
+                    {"culled_unseen", double(header.culled_unseen)},
+                    {"special_clusters", double(header.special_count)},
+                    {"bucketed_clusters", double(header.bucketed)},
+                    {"depth_max", double(header.depth_max)},
+                    {"memory_bytes",
+                     double(build_.required_bytes(header.cluster_count, triangle_count_) +
+                            (receivers_ ? receivers_->memory_bytes() : 0)),
+                     "bytes"}};
     if (!reference_) {
         const taskpool::pool::PoolStatus& status = build_.status();
         samples.push_back({"tasks", double(status.state.spawned) + 1});

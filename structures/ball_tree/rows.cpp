@@ -1,9 +1,8 @@
 // What this folder adds to the registry of structures.
 #include <algorithm>
-#include <array>
-#include <bit>
 
 #include "structures/ball_tree/reference.hpp"
+#include "structures/hash.hpp"
 #include "structures/structure.hpp"
 
 namespace structures::ball_tree {
@@ -64,17 +63,12 @@ class BallTreeBuilder final : public Builder {
         return ball_tree::validate(*mesh_, build_.read_back(), build_.config().leaf_size);
     }
     std::uint64_t fingerprint() override {
-        // FNV-1a over words; nodes by a walk, since the array has holes.
-        std::uint64_t hash = 14695981039346656037ull;
-        const auto add = [&](const auto& value) {
-            using Words = std::array<std::uint32_t, sizeof(value) / 4>;
-            for (const std::uint32_t word : std::bit_cast<Words>(value))
-                hash = (hash ^ word) * 1099511628211ull;
-        };
+        Hash hash;
         const Tree tree = build_.read_back();
-        walk(tree, [&](const BallNode& node, std::uint32_t) { add(node); });
-        for (const BallPoint& point : tree.points) add(point);
-        return hash;
+        // By a walk, since the array has holes.
+        walk(tree, [&](const BallNode& node, std::uint32_t) { hash.add(node); });
+        for (const BallPoint& point : tree.points) hash.add(point);
+        return hash.value();
     }
 
   private:

@@ -1,7 +1,5 @@
 // What this folder adds to the registry of structures: the metric tree of a mesh for one light.
-#include <array>
-#include <bit>
-
+#include "structures/hash.hpp"
 #include "structures/metric_tree/settings.hpp"
 #include "structures/structure.hpp"
 
@@ -22,21 +20,6 @@ std::span<const Parameter> parameters() {
     }();
     return all;
 }
-
-/// FNV-1a over words.
-class Hash {
-  public:
-    template <typename T>
-    void add(const T& value) {
-        for (const std::uint32_t word :
-             std::bit_cast<std::array<std::uint32_t, sizeof(T) / 4>>(value))
-            value_ = (value_ ^ word) * 1099511628211ull;
-    }
-    std::uint64_t value() const { return value_; }
-
-  private:
-    std::uint64_t value_ = 14695981039346656037ull;
-};
 
 class MetricTreeBuilder final : public Builder {
   public:
